@@ -1,0 +1,160 @@
+//! Cameras: from a point on the film to a ray.
+
+use crate::math::{ONE_MINUS_EPSILON, Ray, UVec2, UnitVec3, Vec2, Vec3};
+
+/// A camera at a place, looking along a direction.
+#[derive(Clone, Copy, Debug)]
+pub struct Camera {
+    /// Its eye, relative to the origin that its owner states.
+    pub position: Vec3,
+    /// To the right of the picture.
+    pub right: UnitVec3,
+    /// To the top of the picture.
+    pub up: UnitVec3,
+    /// Against the view: the camera looks along `-back`.
+    pub back: UnitVec3,
+    /// How points of the film become directions.
+    pub projection: Projection,
+    /// Radius of the thin lens; 0 for a pinhole.
+    pub lens_radius: f32,
+    /// Distance of the plane that is in focus, along the view; used where there is a lens.
+    pub focus_distance: f32,
+}
+
+/// How points of the film become directions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Projection {
+    /// All rays start at the eye.
+    Perspective {
+        /// Full angle between the bottom and the top of the picture, in radians, in `(0, pi)`.
+        vertical_fov_radians: f32,
+    },
+    /// All rays are parallel.
+    Orthographic {
+        /// Half the height of what is seen.
+        half_height: f32,
+    },
+}
+
+impl Camera {
+    /// A pinhole at `position`, looking at `target`, `up` to the top of the picture.
+    ///
+    /// `None` where `position` and `target` coincide. An `up` along the view is replaced.
+    pub fn look_at(
+        position: Vec3,
+        target: Vec3,
+        up: Vec3,
+        vertical_fov_radians: f32,
+    ) -> Option<Self> {
+        let back = UnitVec3::normalize(position - target)?;
+        let right = UnitVec3::normalize(up.cross(*back))
+            .unwrap_or_else(|| UnitVec3::from_normalized(back.any_orthonormal_vector()));
+        let up = UnitVec3::normalize(back.cross(*right))?;
+        Some(Self {
+            position,
+            right,
+            up,
+            back,
+            projection: Projection::Perspective {
+                vertical_fov_radians,
+            },
+            lens_radius: 0.0,
+            focus_distance: (position - target).length(),
+        })
+    }
+
+    /// This camera in coordinates that are scaled by `scale` and then moved by `offset`.
+    pub fn placed(&self, scale: f32, offset: Vec3) -> Self {
+        Self {
+            position: self.position * scale + offset,
+            projection: match self.projection {
+                Projection::Orthographic { half_height } => Projection::Orthographic {
+                    half_height: half_height * scale,
+                },
+                perspective => perspective,
+            },
+            lens_radius: self.lens_radius * scale,
+            focus_distance: self.focus_distance * scale,
+            ..*self
+        }
+    }
+
+    /// The ray through `film`, in pixels from the upper left corner of a film of `size`.
+    ///
+    /// `lens` is a point of the unit disk; a pinhole ignores it. The direction has length 1.
+    pub fn ray(&self, film: Vec2, size: UVec2, lens: Vec2) -> Ray {
+        let size = size.as_vec2();
+        // From -1 to 1 up the picture, and in the same measure across it.
+        let x = (2.0 * film.x - size.x) / size.y;
+        let y = 1.0 - 2.0 * film.y / size.y;
+        let (origin, direction) = match self.projection {
+            Projection::Perspective {
+                vertical_fov_radians,
+            } => {
+                let half_height = (0.5 * vertical_fov_radians).tan();
+                let toward = Vec3::new(x * half_height, y * half_height, -1.0);
+                (Vec3::ZERO, toward)
+            }
+            Projection::Orthographic { half_height } => {
+                (Vec3::new(x * half_height, y * half_height, 0.0), -Vec3::Z)
+            }
+        };
+        let (origin, direction) = if self.lens_radius > 0.0 {
+            let in_focus = origin + direction * self.focus_distance;
+            let on_lens = origin + (self.lens_radius * lens).extend(0.0);
+            (on_lens, in_focus - on_lens)
+        } else {
+            (origin, direction)
+        };
+        let world = |v: Vec3| *self.right * v.x + *self.up * v.y + *self.back * v.z;
+        Ray::new(self.position + world(origin), world(direction.normalize()))
+    }
+}
+
+/// The film position of sample offset `u` in `[0, 1)²` of `pixel`; stays inside the pixel.
+pub fn film_position(pixel: UVec2, u: Vec2) -> Vec2 {
+    pixel.as_vec2() + u.min(Vec2::splat(ONE_MINUS_EPSILON))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn camera() -> Camera {
+        Camera::look_at(Vec3::new(0.0, 0.0, 5.0), Vec3::ZERO, Vec3::Y, 1.0).expect("a direction")
+    }
+
+    #[test]
+    fn the_middle_of_the_film_looks_at_the_target() {
+        let ray = camera().ray(Vec2::new(40.0, 30.0), UVec2::new(80, 60), Vec2::ZERO);
+        assert!((ray.direction - Vec3::new(0.0, 0.0, -1.0)).length() < 1e-6);
+    }
+
+    #[test]
+    fn the_field_of_view_spans_the_height() {
+        let camera = camera();
+        let size = UVec2::new(80, 60);
+        let top = camera.ray(Vec2::new(40.0, 0.0), size, Vec2::ZERO).direction;
+        let bottom = camera
+            .ray(Vec2::new(40.0, 60.0), size, Vec2::ZERO)
+            .direction;
+        assert!((top.angle_between(bottom) - 1.0).abs() < 1e-5);
+        assert!(top.y > 0.0);
+    }
+
+    #[test]
+    fn rays_through_the_lens_meet_in_the_plane_of_focus() {
+        let camera = Camera {
+            lens_radius: 0.5,
+            focus_distance: 3.0,
+            ..camera()
+        };
+        let film = Vec2::new(10.0, 20.0);
+        let size = UVec2::new(80, 60);
+        let hits = [Vec2::ZERO, Vec2::X, Vec2::new(-0.6, 0.6)].map(|lens| {
+            let ray = camera.ray(film, size, lens);
+            ray.at((2.0 - ray.origin.z) / ray.direction.z)
+        });
+        assert!((hits[0] - hits[1]).length() < 1e-5 && (hits[0] - hits[2]).length() < 1e-5);
+    }
+}

@@ -1,0 +1,133 @@
+//! Lights: from a shading point to a direction, a weight and what must be unblocked.
+//!
+//! A light returns a record; the integrator shoots the shadow ray. One file a kind; the closed
+//! enum [`Light`] lists them all.
+
+mod disk;
+mod distant;
+mod point;
+mod rectangle;
+mod sphere;
+mod spot;
+
+pub use disk::DiskLight;
+pub use distant::DistantLight;
+pub use point::{Falloff, PointLight};
+pub use rectangle::RectangleLight;
+pub use sphere::SphereLight;
+pub use spot::SpotLight;
+
+use crate::color::Rgb;
+use crate::math::{Ray, UnitVec3, Vec2, Vec3};
+
+/// A light of any kind.
+#[derive(Clone, Copy, Debug)]
+pub enum Light {
+    /// A point, with a soft shadow where it has a radius.
+    Point(PointLight),
+    /// A point that shines into a cone.
+    Spot(SpotLight),
+    /// Parallel rays from far away.
+    Distant(DistantLight),
+    /// A one-sided disk of constant radiance.
+    Disk(DiskLight),
+    /// A one-sided rectangle of constant radiance.
+    Rectangle(RectangleLight),
+    /// A sphere of constant radiance.
+    Sphere(SphereLight),
+}
+
+/// One way in which a light may reach a point.
+#[derive(Clone, Copy, Debug)]
+pub struct LightSample {
+    /// From the point to the light: the direction that shading uses.
+    pub wi: UnitVec3,
+    /// Radiance over solid-angle density (for lights without area: irradiance on a surface that
+    /// faces the light): multiply by BSDF and cosine once the way is clear.
+    pub weight: Rgb,
+    /// What the shadow ray goes to.
+    pub shadow: ShadowEnd,
+}
+
+/// The far end of a shadow ray.
+#[derive(Clone, Copy, Debug)]
+pub enum ShadowEnd {
+    /// A point of the light.
+    Point(Vec3),
+    /// Out of the scene in this direction.
+    Direction(UnitVec3),
+}
+
+/// Calls the method of the same name of whatever kind of light it is.
+macro_rules! each_kind {
+    ($self:expr, $light:ident => $call:expr) => {
+        match $self {
+            Light::Point($light) => $call,
+            Light::Spot($light) => $call,
+            Light::Distant($light) => $call,
+            Light::Disk($light) => $call,
+            Light::Rectangle($light) => $call,
+            Light::Sphere($light) => $call,
+        }
+    };
+}
+
+impl Light {
+    /// One sample of the light as seen from `point`, for `u` in `[0, 1)²`.
+    ///
+    /// `None` where none of the light can reach the point (behind it, outside its cone).
+    pub fn sample(&self, point: Vec3, u: Vec2) -> Option<LightSample> {
+        each_kind!(self, light => light.sample(point, u))
+    }
+
+    /// Whether every `u` gives the same sample: then one shadow ray says it all.
+    pub fn is_delta(&self) -> bool {
+        each_kind!(self, light => light.is_delta())
+    }
+
+    /// Shadow rays per shading point that its author asked for; at least 1.
+    pub fn samples(&self) -> u32 {
+        if self.is_delta() {
+            1
+        } else {
+            each_kind!(self, light => light.samples).max(1)
+        }
+    }
+
+    /// Where `ray` meets the light itself, and the radiance it sees there.
+    ///
+    /// `None` for lights without a surface, invisible ones, and the back of one-sided ones.
+    pub fn emitted(&self, ray: &Ray) -> Option<(f32, Rgb)> {
+        match self {
+            Light::Disk(light) => light.emitted(ray),
+            Light::Rectangle(light) => light.emitted(ray),
+            Light::Sphere(light) => light.emitted(ray),
+            Light::Point(_) | Light::Spot(_) | Light::Distant(_) => None,
+        }
+    }
+
+    /// This light in coordinates that are scaled by `scale` and then moved by `offset`; it
+    /// lights the scaled scene as it lit the original.
+    pub fn placed(&self, scale: f32, offset: Vec3) -> Self {
+        match self {
+            Light::Point(light) => Light::Point(light.placed(scale, offset)),
+            Light::Spot(light) => Light::Spot(light.placed(scale, offset)),
+            Light::Distant(light) => Light::Distant(*light),
+            Light::Disk(light) => Light::Disk(light.placed(scale, offset)),
+            Light::Rectangle(light) => Light::Rectangle(light.placed(scale, offset)),
+            Light::Sphere(light) => Light::Sphere(light.placed(scale, offset)),
+        }
+    }
+
+    /// Whether it gives no light at all.
+    pub fn is_black(&self) -> bool {
+        match self {
+            Light::Point(light) => light.intensity.is_black(),
+            Light::Spot(light) => light.intensity.is_black(),
+            Light::Distant(light) => light.irradiance.is_black(),
+            Light::Disk(light) => light.radiance.is_black(),
+            Light::Rectangle(light) => light.radiance.is_black(),
+            Light::Sphere(light) => light.radiance.is_black(),
+        }
+    }
+}

@@ -1,0 +1,2 @@
+//! Halfshade.
+fn main() {}

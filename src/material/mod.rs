@@ -1,0 +1,87 @@
+//! Materials: what the author said about a surface, and the scattering that follows from it.
+//!
+//! A [`Material`] is evaluated at an interaction and gives a [`Bsdf`]; one file a kind.
+
+mod metallic_roughness;
+mod phong;
+
+pub use metallic_roughness::MetallicRoughness;
+pub use phong::Phong;
+
+use crate::color::Rgb;
+use crate::texture::{TextureRef, TexturedRgb, TexturedScalar};
+
+/// Index of a [`Material`] in a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct MaterialId(pub u32);
+
+/// What the author said about a surface.
+#[derive(Clone, Debug)]
+pub struct Material {
+    /// Its name in the file; may be empty.
+    pub name: String,
+    /// How it scatters light.
+    pub surface: Surface,
+    /// Radiance that it gives off, W/(m² sr).
+    pub emission: TexturedRgb,
+    /// What opacity below 1 means.
+    pub alpha_mode: AlphaMode,
+    /// Opacity in `[0, 1]`; not read where the mode is [`AlphaMode::Opaque`].
+    pub opacity: TexturedScalar,
+    /// Bumps of the shading normal.
+    pub normal_map: Option<NormalMap>,
+    /// Whether the file asks for both sides to be seen. Kept for exports and reports: rays meet
+    /// both sides of every surface.
+    pub is_double_sided: bool,
+}
+
+/// How a surface scatters light.
+#[derive(Clone, Debug)]
+pub enum Surface {
+    /// Lambert plus normalised Phong, mirror and refraction: MTL files and scene files.
+    Phong(Phong),
+    /// glTF's metallic-roughness model.
+    MetallicRoughness(Box<MetallicRoughness>),
+    /// No scattering: the colour as it is, independent of light (`KHR_materials_unlit`).
+    Unlit(TexturedRgb),
+}
+
+/// What opacity below 1 means.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AlphaMode {
+    /// Nothing: the surface is solid.
+    Opaque,
+    /// Below the cutoff the surface is not there.
+    Mask {
+        /// In `[0, 1]`.
+        cutoff: f32,
+    },
+    /// That share of the light is let through.
+    Blend,
+}
+
+/// A tangent-space normal map.
+#[derive(Clone, Copy, Debug)]
+pub struct NormalMap {
+    /// Its texture; x and y in red and green, `2c - 1`.
+    pub texture: TextureRef,
+    /// Multiplies x and y.
+    pub scale: f32,
+    /// Whether it holds heights (MTL `map_Bump`) in place of normals.
+    pub is_height: bool,
+}
+
+impl Material {
+    /// A matte material of the given reflectance.
+    pub fn matte(name: impl Into<String>, reflectance: Rgb) -> Self {
+        Self {
+            name: name.into(),
+            surface: Surface::Phong(Phong::matte(reflectance)),
+            emission: TexturedRgb::constant(Rgb::BLACK),
+            alpha_mode: AlphaMode::Opaque,
+            opacity: TexturedScalar::constant(1.0),
+            normal_map: None,
+            is_double_sided: true,
+        }
+    }
+}

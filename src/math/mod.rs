@@ -1,0 +1,18 @@
+//! Vectors and the few shapes that everything else is made of.
+//!
+//! Vectors and matrices are [`glam`]'s; a point and a direction are both [`Vec3`], and the
+//! functions that transform them say which is meant (`transform_point3`, `transform_vector3`).
+//! Here are the types that glam lacks: unit vectors, rays, boxes and shading frames.
+
+mod aabb;
+mod frame;
+mod ray;
+mod rounding;
+mod unit;
+
+pub use aabb::Aabb;
+pub use frame::Frame;
+pub use glam::{Affine2, Affine3A, DAffine3, DMat4, DQuat, DVec3, Mat3, UVec2, Vec2, Vec3};
+pub use ray::Ray;
+pub use rounding::{ONE_MINUS_EPSILON, UNIT_ROUNDOFF, gamma, next_down, next_up};
+pub use unit::UnitVec3;

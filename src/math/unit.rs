@@ -1,0 +1,92 @@
+//! Unit vectors.
+
+use std::ops::{Deref, Neg};
+
+use glam::Vec3;
+
+/// A direction of length 1, up to rounding.
+///
+/// The only ways in are [`UnitVec3::normalize`] and [`UnitVec3::from_normalized`], so a cosine
+/// is never taken with a vector of another length. Dereferences to [`Vec3`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UnitVec3(Vec3);
+
+impl UnitVec3 {
+    /// The x axis.
+    pub const X: Self = Self(Vec3::X);
+    /// The y axis.
+    pub const Y: Self = Self(Vec3::Y);
+    /// The z axis.
+    pub const Z: Self = Self(Vec3::Z);
+
+    /// Scales `v` to length 1; `None` where it is zero or not finite.
+    ///
+    /// Divides by the largest component first, so that neither tiny nor huge vectors lose
+    /// their direction to underflow or overflow.
+    pub fn normalize(v: Vec3) -> Option<Self> {
+        let largest = v.abs().max_element();
+        if !(largest > 0.0 && largest.is_finite()) || v.is_nan() {
+            return None;
+        }
+        // Twice by steps that cannot overflow: 1/largest is infinite for subnormal components.
+        let scaled = v / largest;
+        Some(Self(scaled / scaled.length()))
+    }
+
+    /// Takes `v` as it is. Its length must be 1 within 1e-4 (checked in debug builds).
+    pub fn from_normalized(v: Vec3) -> Self {
+        debug_assert!(
+            (v.length_squared() - 1.0).abs() < 2e-4,
+            "not a unit vector: {v}"
+        );
+        Self(v)
+    }
+
+    /// The plain vector.
+    pub fn get(self) -> Vec3 {
+        self.0
+    }
+}
+
+impl Deref for UnitVec3 {
+    type Target = Vec3;
+
+    fn deref(&self) -> &Vec3 {
+        &self.0
+    }
+}
+
+impl Neg for UnitVec3 {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn normalize_survives_the_whole_range_of_f32() {
+        for scale in [1e-45, 1e-38, 1e-20, 1.0, 1e20, 1e38] {
+            let v = UnitVec3::normalize(Vec3::new(scale, scale, 0.0));
+            let v = v.unwrap_or(UnitVec3::Z);
+            assert!((v.length() - 1.0).abs() < 1e-6, "scale {scale}: {v:?}");
+            assert!((v.x - v.y).abs() < 1e-6 && v.z == 0.0, "scale {scale}");
+        }
+    }
+
+    #[test]
+    fn normalize_refuses_what_has_no_direction() {
+        for v in [
+            Vec3::ZERO,
+            Vec3::NAN,
+            Vec3::new(0.0, f32::NAN, 1.0),
+            Vec3::INFINITY,
+        ] {
+            assert_eq!(UnitVec3::normalize(v), None, "{v}");
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! How the samples of one pixel are laid out.
+
+use serde::{Deserialize, Serialize};
+
+/// How the samples of one pixel, or of one light, are laid out in the unit square.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Pattern {
+    /// Centres of m × n cells: free of noise, but aliases in regular stripes.
+    Grid,
+    /// One random point in each of m × n cells (Cook 1986, "Stochastic Sampling in Computer Graphics").
+    Jittered,
+    /// Independent points: the baseline that the others are measured against.
+    Random,
+    /// Owen-scrambled Sobol points (Burley 2020, "Practical Hash-based Owen Scrambling").
+    #[default]
+    Sobol,
+}
+
+/// What part of its pixel a camera sample may land in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Target {
+    /// The whole square.
+    #[default]
+    Rectangle,
+    /// The inscribed disk.
+    Circle,
+}
+
+/// How the samples of a picture are made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SamplingConfig {
+    /// Camera samples per pixel that were asked for.
+    pub samples: u32,
+    /// Their layout.
+    pub pattern: Pattern,
+    /// Where in the pixel they land.
+    pub target: Target,
+    /// Other seeds give other random numbers.
+    pub seed: u64,
+}
+
+impl Default for SamplingConfig {
+    fn default() -> Self {
+        Self {
+            samples: 64,
+            pattern: Pattern::Sobol,
+            target: Target::Rectangle,
+            seed: 0,
+        }
+    }
+}
+
+impl Pattern {
+    /// The number of samples that are taken where `count` are asked for: grid and jittered
+    /// round up to m × n cells that are as square as can be, the others take what is asked for.
+    pub fn cells(self, count: u32) -> u32 {
+        todo!("{count}")
+    }
+}
+
+impl SamplingConfig {
+    /// Camera samples that each pixel really takes; at least 1.
+    pub fn samples_per_pixel(&self) -> u32 {
+        self.pattern.cells(self.samples)
+    }
+}
