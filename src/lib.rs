@@ -15,6 +15,8 @@ pub mod texture;
 
 pub mod camera;
 
+pub mod interaction;
+
 pub mod light;
 
 pub mod material;
