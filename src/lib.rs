@@ -24,3 +24,13 @@ pub mod material;
 pub mod scene;
 
 pub mod import;
+
+pub mod bvh;
+
+pub mod prepare;
+
+pub mod film;
+
+pub mod integrate;
+
+pub mod render;

@@ -96,6 +96,14 @@ impl Material {
         }
     }
 
+    /// Share of ambient light that arrives where `lookup` is, in `[0, 1]`.
+    pub fn occlusion(&self, lookup: &Lookup) -> f32 {
+        match &self.surface {
+            Surface::MetallicRoughness(surface) => surface.occlusion(lookup),
+            Surface::Phong(_) | Surface::Unlit(_) => 1.0,
+        }
+    }
+
     /// Diffuse reflectance or base colour where `lookup` is.
     pub fn albedo(&self, lookup: &Lookup) -> Rgb {
         let color = match &self.surface {
