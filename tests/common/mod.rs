@@ -1,0 +1,4 @@
+//! What several tests share.
+#![allow(dead_code)] // each test file uses its own part of it
+
+pub mod build;
