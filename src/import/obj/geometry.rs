@@ -76,7 +76,10 @@ impl Corners {
     /// Takes away every index of texture coordinates above `uvs` and of normals above
     /// `normals`; how many those were.
     pub fn drop_above(&mut self, uvs: usize, normals: usize) -> [u64; 2] {
-        [drop_above(&mut self.uvs, uvs), drop_above(&mut self.normals, normals)]
+        [
+            drop_above(&mut self.uvs, uvs),
+            drop_above(&mut self.normals, normals),
+        ]
     }
 
     /// Whether no corner has texture coordinates or a normal.
@@ -156,7 +159,11 @@ pub struct Geometry {
 impl Geometry {
     /// The corners of face `face`.
     pub fn corners_of(&self, face: usize) -> std::ops::Range<usize> {
-        let start = if face == 0 { 0 } else { self.face_ends[face - 1] };
+        let start = if face == 0 {
+            0
+        } else {
+            self.face_ends[face - 1]
+        };
         start as usize..self.face_ends[face] as usize
     }
 

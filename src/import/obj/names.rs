@@ -77,7 +77,10 @@ mod tests {
         assert_eq!(names("a.mtl"), ["a.mtl"]);
         assert_eq!(names("a.mtl b.MTL  c.mtl"), ["a.mtl", "b.MTL", "c.mtl"]);
         assert_eq!(names("my a.mtl my b.mtl"), ["my a.mtl", "my b.mtl"]);
-        assert_eq!(names("a.mtl.bak b.mtl materials"), ["a.mtl.bak b.mtl", "materials"]);
+        assert_eq!(
+            names("a.mtl.bak b.mtl materials"),
+            ["a.mtl.bak b.mtl", "materials"]
+        );
         assert_eq!(names(""), [""; 0]);
     }
 

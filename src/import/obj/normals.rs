@@ -74,20 +74,37 @@ fn ring(geometry: &Geometry, face: usize) -> Vec<DVec3> {
         .collect()
 }
 
+/// Gives the corners of smoothing groups their normals, one group after the other.
 fn smooth_groups(geometry: &mut Geometry) {
-    let group = |geometry: &Geometry, run: usize| geometry.runs[run].smoothing;
-    let mut runs: Vec<usize> = (0..geometry.runs.len())
-        .filter(|&run| group(geometry, run) != 0)
+    let mut runs: Vec<(u32, usize)> = geometry
+        .runs
+        .iter()
+        .enumerate()
+        .filter(|(_, run)| run.smoothing != 0)
+        .map(|(number, run)| (run.smoothing, number))
         .collect();
-    runs.sort_by_key(|&run| group(geometry, run));
-    let mut sums = VertexSums::new(if runs.is_empty() { 0 } else { geometry.positions.len() });
-    for runs in runs.chunk_by(|&a, &b| group(geometry, a) == group(geometry, b)) {
-        let faces = || runs.iter().flat_map(|&run| geometry.faces_of(run));
-        for face in faces() {
-            add_face(geometry, face, &mut sums);
+    if runs.is_empty() {
+        return;
+    }
+    runs.sort_unstable();
+    let mut sums = VertexSums::new(geometry.positions.len());
+    for runs in runs.chunk_by(|(a, _), (b, _)| a == b) {
+        for &(_, run) in runs {
+            for face in geometry.faces_of(run) {
+                add_face(geometry, face, &mut sums);
+            }
         }
-        let faces: Vec<usize> = faces().collect();
-        assign(geometry, &faces, &sums);
+        let base = geometry.normals.len();
+        let normals = sums
+            .sums
+            .iter()
+            .map(|sum| sum.normalize_or_zero().as_vec3());
+        geometry.normals.extend(normals);
+        for &(_, run) in runs {
+            for face in geometry.faces_of(run) {
+                assign(geometry, face, &sums, base);
+            }
+        }
         sums.clear();
     }
 }
@@ -133,7 +150,10 @@ impl VertexSums {
 /// Adds the normal of a face without normals to the sums at its corners.
 fn add_face(geometry: &Geometry, face: usize, sums: &mut VertexSums) {
     let corners = geometry.corners_of(face);
-    if corners.clone().all(|i| geometry.corners.get(i).normal.is_some()) {
+    if corners
+        .clone()
+        .all(|i| geometry.corners.get(i).normal.is_some())
+    {
         return;
     }
     let ring = ring(geometry, face);
@@ -153,16 +173,17 @@ fn interior_angle(ring: &[DVec3], place: usize, normal: DVec3) -> f64 {
     let to_previous = ring[(place + ring.len() - 1) % ring.len()] - here;
     let sine = to_next.cross(to_previous).dot(normal);
     let angle = sine.atan2(to_next.dot(to_previous));
-    if angle < 0.0 { angle + std::f64::consts::TAU } else { angle }
+    if angle < 0.0 {
+        angle + std::f64::consts::TAU
+    } else {
+        angle
+    }
 }
 
-/// Gives the corners of `faces` that have no normal the one of their vertex.
-fn assign(geometry: &mut Geometry, faces: &[usize], sums: &VertexSums) {
-    let base = geometry.normals.len();
-    geometry
-        .normals
-        .extend(sums.sums.iter().map(|sum| sum.normalize_or_zero().as_vec3()));
-    for i in faces.iter().flat_map(|&face| geometry.corners_of(face)) {
+/// Gives the corners of `face` that have no normal that of their vertex; the normals of `sums`
+/// stand behind the first `base`.
+fn assign(geometry: &mut Geometry, face: usize, sums: &VertexSums, base: usize) {
+    for i in geometry.corners_of(face) {
         let corner = geometry.corners.get(i);
         let slot = sums.slots[corner.vertex.get() as usize - 1];
         let normal = slot.and_then(|slot| slot.checked_add(base as u32));

@@ -89,7 +89,11 @@ impl Triangulator {
     }
 
     fn turn_with_the_ring(&mut self) {
-        let total: f64 = self.triangles.iter().map(|&t| signed_area(&self.flat, t)).sum();
+        let total: f64 = self
+            .triangles
+            .iter()
+            .map(|&t| signed_area(&self.flat, t))
+            .sum();
         if total < 0.0 {
             for triangle in &mut self.triangles {
                 triangle.swap(1, 2);
@@ -143,7 +147,11 @@ fn quad(ring: &[DVec3], triangles: &mut Vec<[u32; 3]>) -> Outcome {
     };
     let cuts = [[[0, 1, 2], [0, 2, 3]], [[1, 2, 3], [1, 3, 0]]];
     let smaller = cuts.map(smaller_half);
-    let best = if smaller[0] > 0.0 || smaller[0] >= smaller[1] { 0 } else { 1 };
+    let best = if smaller[0] > 0.0 || smaller[0] >= smaller[1] {
+        0
+    } else {
+        1
+    };
     triangles.extend_from_slice(&cuts[best]);
     if smaller[best] >= 0.0 {
         Outcome::Covered
@@ -224,7 +232,14 @@ impl<'a> OuterEdges<'a> {
     }
 
     /// Splits triangle `number`, which lies on the edge from `a` to `b`, at corners between them.
-    fn split(&mut self, number: u32, a: u32, between: &[u32], b: u32, triangles: &mut Vec<[u32; 3]>) {
+    fn split(
+        &mut self,
+        number: u32,
+        a: u32,
+        between: &[u32],
+        b: u32,
+        triangles: &mut Vec<[u32; 3]>,
+    ) {
         let corners = triangles[number as usize];
         let Some(&apex) = corners.iter().find(|&&i| i != a && i != b) else {
             return;
@@ -254,5 +269,8 @@ fn lie_in_order(flat: &[[f64; 2]], a: u32, between: &[u32], b: u32) -> bool {
 /// Triangles without area that keep the corners of a spike, `between` `a` and `b`.
 fn fan_without_area(a: u32, between: &[u32], b: u32) -> impl Iterator<Item = [u32; 3]> {
     let ends = between.iter().skip(1).copied().chain([b]);
-    between.iter().zip(ends).map(move |(&from, to)| [a, from, to])
+    between
+        .iter()
+        .zip(ends)
+        .map(move |(&from, to)| [a, from, to])
 }

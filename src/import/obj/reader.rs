@@ -2,12 +2,12 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::geometry::{Corner, Geometry, Index, Part, Run};
+use super::geometry::{Corner, Geometry, Part, Run};
 use super::lines::{Line, Lines, Words, number, shown};
 use super::names::{Names, library_names};
 use super::references::{Attributes, BadIndex, References, message};
 use crate::import::{WarningCode, Warnings};
-use crate::math::{DVec3, Vec2, Vec3};
+use crate::math::{DVec3, Vec2};
 
 /// What is wrong with a file, and on which line.
 #[derive(Debug, PartialEq, Eq)]
@@ -42,12 +42,10 @@ pub fn read(bytes: &[u8]) -> Result<(Geometry, Warnings), LineError> {
         has_statements: false,
     };
     for line in Lines::new(bytes) {
-        reader
-            .statement(&line)
-            .map_err(|what| LineError {
-                line: Some(line.number),
-                what,
-            })?;
+        reader.statement(&line).map_err(|what| LineError {
+            line: Some(line.number),
+            what,
+        })?;
     }
     reader.finish()
 }
@@ -134,14 +132,20 @@ impl Reader {
 
     fn uv(&mut self, mut words: Words<'_>) -> Result<(), String> {
         let [u] = numbers::<1>("a texture coordinate", &mut words)?;
-        let v = words.next().map_or(Ok(0.0), |w| parsed("a texture coordinate", w))?;
-        self.geometry.uvs.push(Vec2::new(u as f32, (1.0 - v) as f32));
+        let v = words
+            .next()
+            .map_or(Ok(0.0), |w| parsed("a texture coordinate", w))?;
+        self.geometry
+            .uvs
+            .push(Vec2::new(u as f32, (1.0 - v) as f32));
         Ok(())
     }
 
     fn normal(&mut self, mut words: Words<'_>) -> Result<(), String> {
         let normal = numbers::<3>("a normal", &mut words)?;
-        self.geometry.normals.push(DVec3::from_array(normal).as_vec3());
+        self.geometry
+            .normals
+            .push(DVec3::from_array(normal).as_vec3());
         Ok(())
     }
 
@@ -169,8 +173,8 @@ impl Reader {
             self.geometry.corners.truncate(start);
             return Ok(());
         }
-        let end = u32::try_from(end)
-            .map_err(|_| format!("more than {} corners of faces", u32::MAX))?;
+        let end =
+            u32::try_from(end).map_err(|_| format!("more than {} corners of faces", u32::MAX))?;
         self.start_run_where_needed();
         self.geometry.face_ends.push(end);
         Ok(())
@@ -188,7 +192,9 @@ impl Reader {
         Ok(Corner {
             vertex,
             uv: self.uvs.resolve(uv, self.geometry.uvs.len(), line)?,
-            normal: self.normals.resolve(normal, self.geometry.normals.len(), line)?,
+            normal: self
+                .normals
+                .resolve(normal, self.geometry.normals.len(), line)?,
         })
     }
 
@@ -216,7 +222,10 @@ impl Reader {
         const MOST: usize = 20;
         let is_word = |b: &u8| b.is_ascii_alphanumeric() || b"_-.:".contains(b);
         if !keyword.iter().all(is_word) {
-            return Err(format!("{:?} is not a statement of an OBJ file", shown(keyword)));
+            return Err(format!(
+                "{:?} is not a statement of an OBJ file",
+                shown(keyword)
+            ));
         }
         let mut name = shown(keyword);
         if self.skipped.statements.len() >= MOST && !self.skipped.statements.contains_key(&name) {
@@ -234,11 +243,20 @@ impl Reader {
         if let Some((index, line)) = self.vertices.first_above(vertices) {
             return Err(LineError {
                 line: Some(line),
-                what: message(&BadIndex::OutOfRange, index.to_string().as_bytes(), "vertex", vertices),
+                what: message(
+                    &BadIndex::OutOfRange,
+                    index.to_string().as_bytes(),
+                    "vertex",
+                    vertices,
+                ),
             });
         }
         if vertices == 0 {
-            let what = if self.has_statements { "it has no vertices" } else { "it is empty" };
+            let what = if self.has_statements {
+                "it has no vertices"
+            } else {
+                "it is empty"
+            };
             return Err(LineError {
                 line: None,
                 what: what.to_owned(),
@@ -260,7 +278,11 @@ impl Skipped {
         let mut add = |code, message: &str, count| warnings.add_many(code, message, count);
         add(NotTriangles, "points are not rendered", self.points);
         add(NotTriangles, "lines are not rendered", self.lines);
-        add(BadFace, "faces with fewer than three corners were left out", self.small_faces);
+        add(
+            BadFace,
+            "faces with fewer than three corners were left out",
+            self.small_faces,
+        );
         add(
             BadAttribute,
             "numbers behind a vertex that are no colour were ignored",
@@ -271,7 +293,11 @@ impl Skipped {
                 let message = format!("free-form curves and surfaces (`{name}`) are not rendered");
                 warnings.add_many(NotTriangles, message, count);
             } else {
-                warnings.add_many(UnknownStatement, format!("`{name}` was not understood"), count);
+                warnings.add_many(
+                    UnknownStatement,
+                    format!("`{name}` was not understood"),
+                    count,
+                );
             }
         }
     }

@@ -75,7 +75,12 @@ impl Attributes {
     ///
     /// # Errors
     /// Where it is not a whole number.
-    pub fn resolve(&mut self, word: &[u8], count: usize, line: usize) -> Result<Option<Index>, String> {
+    pub fn resolve(
+        &mut self,
+        word: &[u8],
+        count: usize,
+        line: usize,
+    ) -> Result<Option<Index>, String> {
         if word.is_empty() {
             return Ok(None);
         }
@@ -150,7 +155,14 @@ mod tests {
         assert_eq!(resolve("+8"), Ok(8));
         assert_eq!(resolve("-1"), Ok(8));
         assert_eq!(resolve("-8"), Ok(1));
-        for word in ["0", "-0", "-9", "4294967296", "99999999999999999999", "-99999999999999999999"] {
+        for word in [
+            "0",
+            "-0",
+            "-9",
+            "4294967296",
+            "99999999999999999999",
+            "-99999999999999999999",
+        ] {
             assert_eq!(resolve(word), Err(BadIndex::OutOfRange), "{word}");
         }
         for word in ["", "-", "1.5", "x", "1e3", "--1"] {
@@ -164,7 +176,11 @@ mod tests {
         for (line, word) in ["9", "3", "12", "11", "20"].iter().enumerate() {
             references.resolve(word.as_bytes(), 4, line).unwrap();
         }
-        let first = |count| references.first_above(count).map(|(i, line)| (i.get(), line));
+        let first = |count| {
+            references
+                .first_above(count)
+                .map(|(i, line)| (i.get(), line))
+        };
         assert_eq!(first(8), Some((9, 0)));
         assert_eq!(first(10), Some((12, 2)));
         assert_eq!(first(12), Some((20, 4)));
