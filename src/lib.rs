@@ -34,3 +34,5 @@ pub mod film;
 pub mod integrate;
 
 pub mod render;
+
+pub mod output;
