@@ -135,7 +135,8 @@ fn a_disk_light_has_its_closed_form() {
 #[test]
 fn the_penumbra_of_a_half_plane_has_its_closed_form() {
     const RADIUS: f32 = 0.5;
-    let (above, below) = (1.0f32, 2.0f32);
+    // So far away that shares of solid angle are shares of area.
+    let (above, below) = (20.0f32, 40.0f32);
     let mut scene = plane();
     // Covers x < 0 at height `below`; the light is `above` higher.
     let center = Vec3::new(-25.0, below, 0.0);

@@ -12,7 +12,7 @@ use crate::bvh::{Builder, Hit};
 use crate::camera::Camera;
 use crate::import::{WarningCode, Warnings};
 use crate::light::Light;
-use crate::math::{DAffine3, DVec3, Mat3, Ray, Vec3};
+use crate::math::{DAffine3, DVec3, Mat3, Ray, Vec3, gamma};
 use crate::scene::{Background, Placed, Scene};
 
 use geometry::Geometry;
@@ -123,15 +123,30 @@ impl PreparedScene<'_> {
     /// The nearest hit of `ray`, or the nearest beyond `after`, a former hit of the same ray.
     ///
     /// Hits at the same distance come in the order of their triangles, so that a walk from hit to
-    /// hit meets each of several coincident surfaces once.
+    /// hit meets each of several coincident surfaces once; and a ray through the edge of two
+    /// triangles crosses one surface there, not two.
     pub fn closest_hit(&self, ray: &Ray, after: Option<&Hit>) -> Option<Hit> {
         match after {
             None => self.geometry.tracer.closest_hit(ray),
-            Some(last) => self
-                .geometry
-                .tracer
-                .closest_hit_if(ray, |hit| order(hit) > order(last)),
+            Some(last) => self.geometry.tracer.closest_hit_if(ray, |hit| {
+                order(hit) > order(last) && !self.is_same_crossing(ray, last, hit)
+            }),
         }
+    }
+
+    /// Whether two hits of a ray are on an edge or corner that their triangles share, and the
+    /// triangles face the same way.
+    fn is_same_crossing(&self, ray: &Ray, a: &Hit, b: &Hit) -> bool {
+        let is_near = a.instance == b.instance && b.t - a.t <= gamma(8) * b.t.abs();
+        if !(is_near && is_on_edge(a) && is_on_edge(b)) {
+            return false;
+        }
+        let (p, q) = (self.vertices(a), self.vertices(b));
+        let faces = |[x, y, z]: [DVec3; 3]| {
+            let normal = (y - x).cross(z - x);
+            normal.dot(ray.direction.as_dvec3()) < 0.0
+        };
+        p.iter().any(|v| q.contains(v)) && faces(p) == faces(q)
     }
 
     /// Whether anything that no light passes is in the way of `ray`.
@@ -157,6 +172,11 @@ impl PreparedScene<'_> {
             + size_of_val(self.orientation.as_slice())
             + size_of_val(self.lights.as_slice())
     }
+}
+
+/// Whether a hit is on the border of its triangle, up to rounding of its barycentric weights.
+fn is_on_edge(hit: &Hit) -> bool {
+    hit.u.min(hit.v).min(1.0 - hit.u - hit.v) <= 4.0 * f32::EPSILON
 }
 
 fn order(hit: &Hit) -> (f32, u32, u32) {

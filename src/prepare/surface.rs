@@ -142,7 +142,7 @@ impl<'a> PreparedScene<'a> {
     }
 
     /// The corners of the triangle that was hit, as traced, in prepared coordinates.
-    fn vertices(&self, hit: &Hit) -> [DVec3; 3] {
+    pub(super) fn vertices(&self, hit: &Hit) -> [DVec3; 3] {
         let (tree, placing) = &self.geometry.placings[hit.instance as usize];
         let tree = &self.geometry.trees[*tree as usize];
         let corners = tree.indices[hit.triangle as usize];

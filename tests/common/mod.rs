@@ -2,3 +2,4 @@
 #![allow(dead_code)] // each test file uses its own part of it
 
 pub mod build;
+pub mod chi_square;
