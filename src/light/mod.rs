@@ -160,6 +160,11 @@ impl Toward {
     }
 }
 
+/// Whether a light of this radius (or angle) casts soft shadows.
+fn has_extent(radius: f32) -> bool {
+    radius > 0.0
+}
+
 /// A vector of length 1, in single precision.
 fn unit(direction: DVec3) -> UnitVec3 {
     UnitVec3::from_normalized(direction.as_vec3())
