@@ -117,12 +117,14 @@ fn end(sample: &LightSample) -> DVec3 {
     }
 }
 
+/// From a sample to its place on its light, in the unit square.
+type Place = Box<dyn Fn(&LightSample) -> (f64, f64)>;
+
 /// A light, where it is seen from, and what its samples must be spread like.
 struct Case {
     light: Light,
     seen_from: Vec3,
-    /// The place of a sample on its light, in the unit square.
-    place: Box<dyn Fn(&LightSample) -> (f64, f64)>,
+    place: Place,
     /// What weight a patch of that square is due, about the place given, per area of the square.
     share: Box<dyn Fn(f64, f64) -> f64>,
 }
