@@ -4,7 +4,9 @@
 //! came from. A file that cannot be shown is an [`ImportError`] with its path and place; what is
 //! legal but not shown as its author meant it is a [`Warning`]. Nothing here prints.
 
+mod files;
 mod gltf;
+mod images;
 mod obj;
 pub mod scene_file;
 mod warning;
