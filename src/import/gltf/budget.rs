@@ -1,0 +1,69 @@
+//! A bound on the memory that a file may ask for.
+//!
+//! A few bytes of glTF can ask for any amount of memory: accessors without data, one mesh in a
+//! thousand skins, a million instances. Everything that is made from a file is charged to a
+//! budget in proportion to the bytes that were read, before it is allocated.
+
+use std::cell::Cell;
+
+use crate::import::Problem;
+
+/// What every file may use, however small it is.
+const FLOOR_BYTES: u64 = 256 << 20;
+
+/// What a file may use per byte of its own, beyond [`FLOOR_BYTES`]. Single-byte components
+/// grow to sixteen times their size as `f32`s with padding; the rest is for sharing.
+const FACTOR: u64 = 64;
+
+/// Zeros that an accessor without data may stand for, beyond the same factor.
+const ZEROS_FLOOR_BYTES: u64 = 1 << 20;
+
+/// Memory that may still be taken.
+#[derive(Debug)]
+pub struct Budget {
+    file_bytes: u64,
+    left: Cell<u64>,
+}
+
+impl Budget {
+    /// For a file that has, with those beside it, `file_bytes` bytes.
+    pub fn for_file_of(file_bytes: u64) -> Self {
+        Self {
+            file_bytes,
+            left: Cell::new(FLOOR_BYTES.saturating_add(FACTOR.saturating_mul(file_bytes))),
+        }
+    }
+
+    /// Takes `bytes`.
+    ///
+    /// # Errors
+    /// Where there are not that many left.
+    pub fn take(&self, bytes: u64) -> Result<(), Problem> {
+        let left = self
+            .left
+            .get()
+            .checked_sub(bytes)
+            .ok_or_else(|| self.refuse())?;
+        self.left.set(left);
+        Ok(())
+    }
+
+    /// Whether `bytes` of zeros, which files may leave out, are in proportion to this one.
+    ///
+    /// # Errors
+    /// Where they are not.
+    pub fn check_zeros(&self, bytes: u64) -> Result<(), Problem> {
+        let allowed = ZEROS_FLOOR_BYTES.saturating_add(FACTOR.saturating_mul(self.file_bytes));
+        if bytes > allowed {
+            return Err(self.refuse());
+        }
+        Ok(())
+    }
+
+    fn refuse(&self) -> Problem {
+        Problem::Invalid(format!(
+            "asks for far more memory than its {} bytes account for",
+            self.file_bytes
+        ))
+    }
+}

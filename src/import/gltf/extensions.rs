@@ -1,0 +1,108 @@
+//! What becomes of extensions: known, harmless, left out with a word, or refused.
+
+use std::path::Path;
+
+use super::document::Document;
+use crate::import::{ImportError, ImportOptions, WarningCode, Warnings};
+
+/// Compressed meshes that we cannot read.
+pub const DRACO: &str = "KHR_draco_mesh_compression";
+/// Compressed buffer views that we cannot read.
+pub const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
+/// Lights.
+pub const LIGHTS: &str = "KHR_lights_punctual";
+/// Instances of a node's mesh.
+pub const INSTANCING: &str = "EXT_mesh_gpu_instancing";
+/// WebP images.
+pub const WEBP: &str = "EXT_texture_webp";
+/// KTX2 images, which we cannot read.
+pub const BASISU: &str = "KHR_texture_basisu";
+/// Offset, rotation and scale of texture coordinates.
+pub const TEXTURE_TRANSFORM: &str = "KHR_texture_transform";
+
+/// What we do all of.
+const KNOWN: &[&str] = &[
+    LIGHTS,
+    INSTANCING,
+    WEBP,
+    TEXTURE_TRANSFORM,
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_unlit",
+    "KHR_materials_volume",
+    "KHR_mesh_quantization",
+];
+
+/// What never changes a still picture.
+const HARMLESS: &[&str] = &[
+    "KHR_animation_pointer",
+    "KHR_xmp",
+    "KHR_xmp_json_ld",
+    "KHR_audio_emitter",
+    "KHR_physics_rigid_bodies",
+    "EXT_mesh_features",
+    "EXT_structural_metadata",
+];
+
+/// What will look different without an extension.
+fn effect(name: &str) -> &'static str {
+    match name {
+        "KHR_materials_clearcoat" => "coats are left out",
+        "KHR_materials_sheen" => "cloth lacks its sheen",
+        "KHR_materials_iridescence" => "thin films lack their colours",
+        "KHR_materials_anisotropy" => "brushed surfaces have round highlights",
+        "KHR_materials_dispersion" => "glass does not split light into colours",
+        "KHR_materials_diffuse_transmission" => "thin matte surfaces do not let light through",
+        "KHR_materials_volume_scatter" => "volumes do not scatter light",
+        "KHR_materials_pbrSpecularGlossiness" => {
+            "materials are shown as their metallic-roughness values say, or else white"
+        }
+        "KHR_materials_variants" => "the default variant is shown",
+        "KHR_node_visibility" => "hidden nodes are shown",
+        "KHR_gaussian_splatting" => "splats are left out",
+        "MSFT_lod" => "the finest level of detail is shown",
+        "EXT_lights_image_based" => "light from the environment is left out",
+        "EXT_texture_avif" | "MSFT_texture_dds" | BASISU => {
+            "textures without a PNG, JPEG or WebP image are left out"
+        }
+        _ => "what it adds is left out",
+    }
+}
+
+/// Decides about every extension that the document requires or uses.
+///
+/// # Errors
+/// Where the file requires one that hides its geometry from us, and, in strict mode, any that we
+/// lack.
+pub fn check(
+    document: &Document,
+    path: &Path,
+    options: ImportOptions,
+    warnings: &mut Warnings,
+) -> Result<(), ImportError> {
+    for name in &document.extensions_required {
+        let name = name.as_str();
+        let hides_geometry = name == DRACO || MESHOPT.contains(&name);
+        if hides_geometry || (options.is_strict && !is_known(name)) {
+            return Err(ImportError::unsupported(path, name));
+        }
+        if !is_known(name) {
+            let message = format!("{name} is required and not supported: {}", effect(name));
+            warnings.add(WarningCode::RequiredExtension, message);
+        }
+    }
+    for name in &document.extensions_used {
+        let is_compression = name == DRACO || MESHOPT.contains(&name.as_str());
+        if !is_known(name) && !is_compression && !document.extensions_required.contains(name) {
+            let message = format!("{name} is not supported: {}", effect(name));
+            warnings.add(WarningCode::IgnoredExtension, message);
+        }
+    }
+    Ok(())
+}
+
+fn is_known(name: &str) -> bool {
+    KNOWN.contains(&name) || HARMLESS.contains(&name)
+}

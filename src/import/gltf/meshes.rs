@@ -1,0 +1,272 @@
+//! Meshes: each distinct shape once, however many primitives and nodes use it.
+
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use super::accessor::AccessorReader;
+use super::document::{Document, MeshEntry, Primitive, place};
+use super::extensions::DRACO;
+use super::geometry::{GeometryReader, Shape};
+use super::graph::Graph;
+use super::morph;
+use super::skin::Skin;
+use super::topology::Mode;
+use crate::import::{Problem, WarningCode, Warnings};
+use crate::math::DVec3;
+use crate::scene::{Mesh, MeshId};
+
+/// Something wrong with a named thing.
+pub struct Misplaced {
+    /// What it is called.
+    pub place: String,
+    /// What is wrong with it.
+    pub problem: Problem,
+}
+
+/// One primitive of a mesh as it is shown.
+#[derive(Clone, Copy, Debug)]
+pub struct Part {
+    /// Its triangles.
+    pub mesh: MeshId,
+    /// The document's material; `None` for the default one.
+    pub material: Option<usize>,
+    /// Where its vertices were baked to world coordinates: their origin.
+    pub anchor: Option<DVec3>,
+}
+
+/// A mesh as a node shows it: with the node's morph weights, in the node's skin.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Look {
+    mesh: usize,
+    /// The bits of the node's own weights.
+    weights: Option<Vec<u32>>,
+    skin: Option<usize>,
+}
+
+/// What two primitives must agree in to share a mesh.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct BakedShape<'a> {
+    shape: Shape<'a>,
+    /// The bits of the weights of its targets.
+    weights: Vec<u32>,
+    skin: Option<usize>,
+}
+
+/// Makes meshes and remembers them.
+pub struct Meshes<'a, 'b> {
+    /// All meshes so far.
+    pub meshes: Vec<Mesh>,
+    accessors: &'a AccessorReader<'b>,
+    graph: &'a Graph,
+    looks: BTreeMap<Look, Rc<[Part]>>,
+    shapes: BTreeMap<BakedShape<'a>, Option<(MeshId, Option<DVec3>)>>,
+    skins: BTreeMap<usize, Option<Rc<Skin>>>,
+}
+
+impl<'a, 'b> Meshes<'a, 'b> {
+    /// None yet.
+    pub fn new(accessors: &'a AccessorReader<'b>, graph: &'a Graph) -> Self {
+        Self {
+            meshes: Vec::new(),
+            accessors,
+            graph,
+            looks: BTreeMap::new(),
+            shapes: BTreeMap::new(),
+            skins: BTreeMap::new(),
+        }
+    }
+
+    /// What node `node` shows of its mesh; nothing where it has none.
+    ///
+    /// # Errors
+    /// Where the mesh, one of its primitives or its skin is broken.
+    pub fn of_node(
+        &mut self,
+        node: usize,
+        warnings: &mut Warnings,
+    ) -> Result<Rc<[Part]>, Misplaced> {
+        let document: &'a Document = self.accessors.document;
+        let entry = &document.nodes[node];
+        let Some(index) = entry.mesh else {
+            return Ok(Rc::new([]));
+        };
+        let Some(mesh) = document.meshes.get(index) else {
+            let count = document.meshes.len();
+            let what = format!("its mesh {index} is not there: there are only {count}");
+            return Err(Misplaced {
+                place: document.node_place(node),
+                problem: Problem::Invalid(what),
+            });
+        };
+        let look = Look {
+            mesh: index,
+            weights: entry.weights.as_deref().map(bits),
+            skin: entry.skin,
+        };
+        if let Some(parts) = self.looks.get(&look) {
+            return Ok(Rc::clone(parts));
+        }
+        let weights = entry.weights.as_deref().unwrap_or(&mesh.weights);
+        let skin = self.skin(node, warnings)?;
+        let mut parts = Vec::new();
+        for (i, primitive) in mesh.primitives.iter().enumerate() {
+            let place = primitive_place(index, mesh, i);
+            let part = self.part(primitive, mesh, weights, skin.as_ref(), &place, warnings);
+            parts.extend(part.map_err(|problem| Misplaced { place, problem })?);
+        }
+        let parts: Rc<[Part]> = parts.into();
+        self.looks.insert(look, Rc::clone(&parts));
+        Ok(parts)
+    }
+
+    /// The skin of a node, with its index; `None` where it has none that can be used.
+    fn skin(
+        &mut self,
+        node: usize,
+        warnings: &mut Warnings,
+    ) -> Result<Option<(usize, Rc<Skin>)>, Misplaced> {
+        let document = self.accessors.document;
+        let Some(index) = document.nodes[node].skin else {
+            return Ok(None);
+        };
+        if let Some(skin) = self.skins.get(&index) {
+            return Ok(skin.clone().map(|skin| (index, skin)));
+        }
+        let skin = Skin::read(self.accessors, self.graph, index);
+        let skin = skin.map_err(|problem| Misplaced {
+            place: document.node_place(node),
+            problem,
+        })?;
+        if skin.is_none() {
+            let name = document.skins[index].name.as_deref();
+            let place = place("skin", index, name);
+            let message = format!("{place}: it has no joints with finite places; it is left out");
+            warnings.add(WarningCode::BadValue, message);
+        }
+        let skin = skin.map(Rc::new);
+        self.skins.insert(index, skin.clone());
+        Ok(skin.map(|skin| (index, skin)))
+    }
+
+    fn part(
+        &mut self,
+        primitive: &'a Primitive,
+        mesh: &MeshEntry,
+        weights: &[f32],
+        skin: Option<&(usize, Rc<Skin>)>,
+        place: &str,
+        warnings: &mut Warnings,
+    ) -> Result<Option<Part>, Problem> {
+        let document = self.accessors.document;
+        let mode = Mode::from_code(primitive.mode)
+            .ok_or_else(|| Problem::Invalid(format!("mode {:?} is not known", primitive.mode)))?;
+        if mode == Mode::NotTriangles {
+            let message = format!("{place}: points and lines are not shown");
+            warnings.add(WarningCode::NotTriangles, message);
+            return Ok(None);
+        }
+        if let Some(material) = primitive.material
+            && material >= document.materials.len()
+        {
+            let count = document.materials.len();
+            let what = format!("material {material} is not there: there are only {count}");
+            return Err(Problem::Invalid(what));
+        }
+        self.check_compression(primitive)?;
+        let weights = effective_weights(primitive, weights, place, warnings);
+        let baked = BakedShape {
+            shape: Shape {
+                attributes: &primitive.attributes,
+                indices: primitive.indices,
+                mode,
+                targets: &primitive.targets,
+            },
+            weights: bits(&weights),
+            skin: skin.map(|(index, _)| *index),
+        };
+        let made = match self.shapes.get(&baked) {
+            Some(&made) => made,
+            None => {
+                let name = mesh.name.as_deref().unwrap_or("");
+                let skin = skin.map(|(_, skin)| &**skin);
+                let made = self.make(baked.shape, name, &weights, skin, place, warnings)?;
+                self.shapes.insert(baked, made);
+                made
+            }
+        };
+        Ok(made.map(|(mesh, anchor)| Part {
+            mesh,
+            material: primitive.material,
+            anchor,
+        }))
+    }
+
+    fn make(
+        &mut self,
+        shape: Shape,
+        name: &str,
+        weights: &[f32],
+        skin: Option<&Skin>,
+        place: &str,
+        warnings: &mut Warnings,
+    ) -> Result<Option<(MeshId, Option<DVec3>)>, Problem> {
+        let accessors = self.accessors;
+        let reader = GeometryReader { accessors, place };
+        let Some(mut geometry) = reader.read(shape, warnings)? else {
+            return Ok(None);
+        };
+        morph::apply(&mut geometry, &reader, shape.targets, weights, warnings);
+        let mut anchor = None;
+        if let Some(skin) = skin
+            && skin.apply(&mut geometry, &reader, shape.attributes, warnings)?
+        {
+            anchor = Some(skin.anchor);
+        }
+        let mesh = geometry.into_mesh(name);
+        let mesh = mesh.map_err(|error| Problem::Invalid(error.to_string()))?;
+        self.meshes.push(mesh);
+        Ok(Some((MeshId(self.meshes.len() as u32 - 1), anchor)))
+    }
+
+    /// Draco's data may come with a copy that is not compressed.
+    fn check_compression(&self, primitive: &Primitive) -> Result<(), Problem> {
+        if !primitive.extensions.has(DRACO) {
+            return Ok(());
+        }
+        let accessors = primitive.attributes.values().chain(&primitive.indices);
+        for &accessor in accessors {
+            if self.accessors.get(accessor)?.buffer_view.is_none() {
+                return Err(Problem::Unsupported(DRACO.into()));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn primitive_place(index: usize, mesh: &MeshEntry, primitive: usize) -> String {
+    let mesh = place("mesh", index, mesh.name.as_deref());
+    format!("{mesh}, primitive {primitive}")
+}
+
+fn bits(weights: &[f32]) -> Vec<u32> {
+    weights.iter().map(|weight| weight.to_bits()).collect()
+}
+
+/// The weights of the primitive's targets; none at all where all are 0.
+fn effective_weights(
+    primitive: &Primitive,
+    weights: &[f32],
+    place: &str,
+    warnings: &mut Warnings,
+) -> Vec<f32> {
+    let weights = &weights[..weights.len().min(primitive.targets.len())];
+    if weights.iter().all(|&weight| weight == 0.0) {
+        return Vec::new();
+    }
+    let finite = |&weight: &f32| if weight.is_finite() { weight } else { 0.0 };
+    if weights.iter().any(|weight| !weight.is_finite()) {
+        let message = format!("{place}: a morph weight that is not finite became 0");
+        warnings.add(WarningCode::BadValue, message);
+    }
+    weights.iter().map(finite).collect()
+}

@@ -1,0 +1,158 @@
+//! glTF files of other people give what other people's loaders say: triangles, bounds and counts
+//! of `expected.tsv`, or the named error.
+//!
+//! The models are not part of this project. They are looked for in `HALFSHADE_MODELS`, or beside
+//! the checkout; without them the test says so and does nothing.
+
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use halfshade::import::{ImportOptions, Imported, import_model};
+
+/// Rows that are an error, and the extension that it names.
+const REFUSED: &[(&str, &str)] = &[
+    ("glTF-Draco/", "KHR_draco_mesh_compression is not supported"),
+    (
+        "meshopt-loadersgl/",
+        "EXT_meshopt_compression is not supported",
+    ),
+];
+
+/// Counts that differ from the file's, and why.
+const EXPLAINED: &[Difference] = &[Difference {
+    path: "KTX-BasisU",
+    column: "textures",
+    ours: 0,
+    why: "the only image is KTX2: the texture is left out, with a warning",
+}];
+
+struct Difference {
+    path: &'static str,
+    column: &'static str,
+    ours: u64,
+    why: &'static str,
+}
+
+/// One line of `expected.tsv`.
+struct Row {
+    path: String,
+    triangles: u64,
+    materials: u64,
+    cameras: u64,
+    lights: u64,
+    animations: u64,
+    textures: u64,
+    min: [f64; 3],
+    max: [f64; 3],
+}
+
+fn models() -> Option<PathBuf> {
+    let beside = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/models");
+    let folder = std::env::var("HALFSHADE_MODELS").unwrap_or_else(|_| beside.into());
+    let folder = PathBuf::from(folder);
+    if folder.join("expected.tsv").is_file() {
+        return Some(folder);
+    }
+    eprintln!("skipped: no models in {}", folder.display());
+    None
+}
+
+fn rows(models: &Path) -> Vec<Row> {
+    let table = fs::read_to_string(models.join("expected.tsv")).unwrap();
+    let gltf = table.split("## glTF").nth(1).unwrap();
+    let gltf = gltf.split("## OBJ").next().unwrap();
+    gltf.lines()
+        .filter(|line| line.starts_with("gltf/"))
+        .map(row)
+        .collect()
+}
+
+fn row(line: &str) -> Row {
+    let cells: Vec<&str> = line.split('\t').collect();
+    let number = |i: usize| cells[i].parse::<u64>().unwrap();
+    let vector = |i: usize| {
+        let numbers: Vec<f64> = cells[i].split(',').map(|c| c.parse().unwrap()).collect();
+        <[f64; 3]>::try_from(numbers).unwrap()
+    };
+    Row {
+        path: cells[0].into(),
+        triangles: number(1),
+        materials: number(4),
+        cameras: number(5),
+        lights: number(6),
+        animations: number(10),
+        textures: number(11),
+        min: vector(12),
+        max: vector(13),
+    }
+}
+
+/// The file's own materials: the default one is there only where a primitive has none, and then
+/// it is the last.
+fn file_materials(imported: &Imported) -> u64 {
+    let materials = &imported.scene.materials;
+    let is_default_added = materials.last().is_some_and(|m| m.name == "default");
+    (materials.len() - usize::from(is_default_added)) as u64
+}
+
+/// What differs between a row and what was imported, one line each.
+fn differences(row: &Row, imported: &Imported) -> Vec<String> {
+    let scene = &imported.scene;
+    let counts = [
+        ("triangles", row.triangles, scene.triangle_count()),
+        ("materials", row.materials, file_materials(imported)),
+        ("cameras", row.cameras, scene.cameras.len() as u64),
+        ("lights", row.lights, scene.lights.len() as u64),
+        ("animations", row.animations, scene.animations as u64),
+        ("textures", row.textures, scene.textures.len() as u64),
+    ];
+    let mut found = Vec::new();
+    for (column, expected, ours) in counts {
+        let explained = EXPLAINED.iter().find(|difference| {
+            difference.column == column
+                && row.path.contains(difference.path)
+                && difference.ours == ours
+        });
+        match explained {
+            Some(difference) => println!("{}: {column}: {}", row.path, difference.why),
+            None if ours != expected => {
+                found.push(format!("{}: {column} {ours}, not {expected}", row.path));
+            }
+            None => {}
+        }
+    }
+    let (min, max) = scene.bounds().unwrap();
+    let size = |v: [f64; 3]| v.into_iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+    let size = size(row.min).max(size(row.max));
+    for (ours, expected) in [(min, row.min), (max, row.max)] {
+        for (ours, expected) in ours.to_array().into_iter().zip(expected) {
+            // Half of the sixth digit, and single precision's share of the largest coordinate.
+            let tolerance = 5.1e-6 * expected.abs() + 2.5e-7 * size;
+            if (ours - expected).abs() > tolerance {
+                found.push(format!("{}: bounds {ours}, not {expected}", row.path));
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn every_model_is_as_other_loaders_say() {
+    let Some(models) = models() else { return };
+    let rows = rows(&models);
+    assert_eq!(rows.len(), 86, "rows of expected.tsv");
+    let mut found = Vec::new();
+    for row in rows {
+        let imported = import_model(&models.join(&row.path), ImportOptions::default());
+        let refused = REFUSED.iter().find(|(path, _)| row.path.contains(path));
+        match (imported, refused) {
+            (Ok(imported), None) => found.extend(differences(&row, &imported)),
+            (Err(error), Some((_, name))) if error.to_string().contains(name) => {}
+            (Err(error), _) => found.push(error.to_string()),
+            (Ok(_), Some(_)) => found.push(format!("{}: was not refused", row.path)),
+        }
+    }
+    assert!(found.is_empty(), "{}", found.join("\n"));
+}
