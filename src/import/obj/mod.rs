@@ -36,7 +36,7 @@ use mtl::{NEUTRAL_REFLECTANCE, Textures};
 use super::{ImportError, Imported, WarningCode, Warnings, files};
 use crate::material::{Material, MaterialId, Surface};
 use crate::math::DAffine3;
-use crate::scene::{Instance, MeshId, Scene, Settings};
+use crate::scene::{Instance, MeshId, Scene};
 
 /// Imports an `.obj` file.
 ///
@@ -74,8 +74,8 @@ pub fn import(path: &Path) -> Result<Imported, ImportError> {
     }
     Ok(Imported {
         scene,
-        settings: Settings::default(),
         warnings,
+        ..Imported::default()
     })
 }
 
