@@ -44,6 +44,7 @@ fn settings_are_read() {
         },
         integrator: IntegratorKind::Depth,
         max_depth: 3,
+        ..Settings::default()
     };
     assert_eq!(imported.settings, expected);
     assert_eq!(imported.scene.background.radiance, Rgb::new(0.5, 0.7, 1.0));
@@ -74,6 +75,7 @@ fn settings_survive_being_printed_and_read() {
                 },
                 integrator,
                 max_depth: 1024,
+                ..Settings::default()
             };
             let text = settings_to_toml(&settings);
             assert_eq!(scene(&text).unwrap().settings, settings, "{text}");
