@@ -5,7 +5,7 @@ use halfshade::color::Rgb;
 use halfshade::import::{Imported, SceneOptions};
 use halfshade::light::Light;
 use halfshade::material::Surface;
-use halfshade::math::{DVec3, Vec3};
+use halfshade::math::{DVec3, Vec2, Vec3};
 
 use crate::files::{Files, looking_through, scene};
 
@@ -249,16 +249,21 @@ fn a_camera_of_a_model_can_be_given_a_lens_and_an_angle() {
 fn lights_and_cameras_are_placed_with_their_model() {
     let placed = format!("{STUDIO}scale = 2\nrotate = [0, 90, 0]\ntranslate = [100, 0, 0]\n");
     let imported = scene(&placed).unwrap();
-    let Light::Point(lamp) = imported.scene.lights[0].item else {
-        panic!("a point light")
-    };
     // (1, 2, 3) doubled is (2, 4, 6); a quarter turn about y makes it (6, 4, -2).
     assert_eq!(
         imported.scene.lights[0].origin,
         DVec3::new(106.0, 4.0, -2.0)
     );
-    // Twice as far, four times the intensity: the model is lit as before.
-    assert_eq!(lamp.intensity, Rgb::new(32.0, 16.0, 8.0));
+    // At twice the distance the placed light is as bright as the light was: the model looks as before.
+    let lit = |imported: &Imported, offset: Vec3| {
+        let sample = imported.scene.lights[0]
+            .item
+            .sample(offset, Vec2::splat(0.5));
+        sample.expect("some light").weight
+    };
+    let original = scene(STUDIO).unwrap();
+    assert_eq!(lit(&original, 4.0 * Vec3::Y), Rgb::new(0.5, 0.25, 0.125));
+    assert_eq!(lit(&imported, 8.0 * Vec3::Y), Rgb::new(0.5, 0.25, 0.125));
     let front = &imported.scene.cameras[0];
     assert_eq!(front.origin, DVec3::new(108.0, 0.0, 0.0));
     assert!((front.item.back.get() - Vec3::X).length() < 1e-6);
