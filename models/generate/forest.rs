@@ -16,7 +16,7 @@ fn height(x: f64, z: f64) -> f64 {
     38.0 * hills * rise.min(1.0) + 16.0 * rise * rise
 }
 
-/// Hills, and a tree that is placed some 13,000 times: over 7 million triangles as rendered.
+/// Hills, and a tree that is placed some 10,000 times: over 7 million triangles as rendered.
 pub fn forest() -> Model {
     let mut model = Model::default();
     let ground = model.material("forest floor", [0.17, 0.19, 0.06], Finish::Matte);
