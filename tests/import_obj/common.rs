@@ -54,7 +54,9 @@ pub fn message_of(obj: &[u8]) -> String {
     let folder = Folder::with(&[("a.obj", obj)]);
     let message = folder.import("a.obj").map(|_| ()).unwrap_err();
     let path = folder.path("a.obj").display().to_string();
-    let rest = message.strip_prefix(&path).expect("the message names the file");
+    let rest = message
+        .strip_prefix(&path)
+        .expect("the message names the file");
     rest.trim_start_matches([',', ':', ' ']).to_owned()
 }
 
@@ -74,5 +76,9 @@ pub fn world_triangles(scene: &Scene) -> Vec<[DVec3; 3]> {
 
 /// The warnings of kind `code`.
 pub fn warnings(imported: &Imported, code: WarningCode) -> Vec<Warning> {
-    imported.warnings.iter().filter(|w| w.code == code).collect()
+    imported
+        .warnings
+        .iter()
+        .filter(|w| w.code == code)
+        .collect()
 }

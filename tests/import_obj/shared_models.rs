@@ -17,9 +17,25 @@ pub struct Row {
 impl Row {
     fn column(&self, name: &str) -> &str {
         const NAMES: [&str; 19] = [
-            "path", "triangles", "faces", "quads", "ngons", "vertices", "vt", "vn",
-            "coloured_vertices", "negative_indices", "lines", "points", "materials_used", "groups",
-            "bbox_min", "bbox_max", "out_of_range", "mtllib", "assimp_faces",
+            "path",
+            "triangles",
+            "faces",
+            "quads",
+            "ngons",
+            "vertices",
+            "vt",
+            "vn",
+            "coloured_vertices",
+            "negative_indices",
+            "lines",
+            "points",
+            "materials_used",
+            "groups",
+            "bbox_min",
+            "bbox_max",
+            "out_of_range",
+            "mtllib",
+            "assimp_faces",
         ];
         let index = NAMES.iter().position(|&n| n == name).unwrap();
         self.columns.get(index).map_or("", String::as_str)
@@ -30,7 +46,11 @@ impl Row {
     }
 
     fn point(&self, name: &str) -> DVec3 {
-        let values: Vec<f64> = self.column(name).split(',').map(|v| v.parse().unwrap()).collect();
+        let values: Vec<f64> = self
+            .column(name)
+            .split(',')
+            .map(|v| v.parse().unwrap())
+            .collect();
         DVec3::from_slice(&values)
     }
 }
@@ -87,7 +107,10 @@ fn compare(row: &Row) -> Result<(), String> {
     if materials != used && (materials != used + 1 || bare == 0) {
         return Err(format!("{materials} materials"));
     }
-    let lines: u64 = warnings(&imported, WarningCode::NotTriangles).iter().map(|w| w.count).sum();
+    let lines: u64 = warnings(&imported, WarningCode::NotTriangles)
+        .iter()
+        .map(|w| w.count)
+        .sum();
     if lines != row.number("lines") + row.number("points") {
         return Err(format!("{lines} lines and points"));
     }
@@ -111,7 +134,10 @@ fn compare(row: &Row) -> Result<(), String> {
 #[test]
 fn a_vertex_that_is_not_there_is_named_with_its_line() {
     let messages = [
-        ("obj/tobj/invalid_index.obj", "line 12: face uses vertex 7, but there are only 6"),
+        (
+            "obj/tobj/invalid_index.obj",
+            "line 12: face uses vertex 7, but there are only 6",
+        ),
         (
             "obj/obj2gltf/box-incomplete-attributes/box-incomplete-positions.obj",
             "line 29: face uses vertex 2, but there are only 1",
