@@ -105,7 +105,7 @@ fn concave_polygons_are_covered_once() {
         .collect();
     for points in [l.as_slice(), &comb] {
         for axis in [DVec3::X, DVec3::Y, DVec3::new(1.0, -2.0, 0.5).normalize()] {
-            for angle in [0.0, 0.7, 1.5707963267948966, 3.0] {
+            for angle in [0.0, 0.7, std::f64::consts::FRAC_PI_2, 3.0] {
                 let turn = DQuat::from_axis_angle(axis, angle);
                 let corners: Vec<DVec3> = polygon(points).iter().map(|&p| turn * p).collect();
                 assert_eq!(assert_covered(&corners, true), Ok(()), "{axis} {angle}");

@@ -100,11 +100,10 @@ fn compare(row: &Row) -> Result<(), String> {
     if triangles != row.number("triangles") {
         return Err(format!("{triangles} triangles"));
     }
-    let bare = scene.materials.iter().filter(|m| m.name.is_empty()).count() as u64;
-    let materials = scene.materials.len() as u64;
-    let used = row.number("materials_used");
-    // The neutral material of faces before any `usemtl` has no name; nor has one file's own.
-    if materials != used && (materials != used + 1 || bare == 0) {
+    let named = scene.materials.iter().filter(|m| !m.name.is_empty());
+    let unnamed = row.name.contains("unnamed-material") as usize;
+    let materials = (named.count() + unnamed) as u64;
+    if materials != row.number("materials_used") - without_faces(&row.name) {
         return Err(format!("{materials} materials"));
     }
     let lines: u64 = warnings(&imported, WarningCode::NotTriangles)
@@ -118,16 +117,41 @@ fn compare(row: &Row) -> Result<(), String> {
         None if triangles == 0 => Ok(()),
         None => Err("no bounds".to_owned()),
         Some((min, max)) => {
-            // Six significant digits of the largest coordinate, and single precision.
-            let expected = [row.point("bbox_min"), row.point("bbox_max")];
-            let scale = expected[0].abs().max(expected[1].abs()).max_element();
-            let error = (min - expected[0]).abs().max((max - expected[1]).abs());
-            if error.max_element() <= 1e-6 * scale {
+            let (expected_min, expected_max) = (row.point("bbox_min"), row.point("bbox_max"));
+            let scale = expected_min.abs().max(expected_max.abs()).max_element();
+            let is_near = |got: DVec3, expected: DVec3| {
+                let components = got.to_array().into_iter().zip(expected.to_array());
+                components.into_iter().all(|(got, expected)| {
+                    (got - expected).abs() <= rounding(expected) + 1e-7 * scale
+                })
+            };
+            if is_near(min, expected_min) && is_near(max, expected_max) {
                 Ok(())
             } else {
                 Err(format!("bounds {min} {max}"))
             }
         }
+    }
+}
+
+/// Half a unit of the sixth significant digit of `value`.
+fn rounding(value: f64) -> f64 {
+    if value == 0.0 {
+        0.0
+    } else {
+        0.5 * 10f64.powf(value.abs().log10().floor() - 5.0)
+    }
+}
+
+/// Explained differences: materials that a `usemtl` selects, which `expected.tsv` counts, and no
+/// face uses, so that they are not in the scene.
+fn without_faces(name: &str) -> u64 {
+    match name {
+        // `front_wall` (blue) and `light` have vertices, but their faces are comments.
+        "obj/embree/cornell_box.obj" => 2,
+        // The same box, with its light.
+        "obj/tobj/cornell_box.obj" => 1,
+        _ => 0,
     }
 }
 

@@ -156,7 +156,7 @@ impl Reader {
             Some(word) => std::str::from_utf8(word)
                 .ok()
                 .and_then(|w| w.parse().ok())
-                .ok_or_else(|| format!("{:?} is not a smoothing group", shown(word)))?,
+                .ok_or_else(|| format!("\"{}\" is not a smoothing group", shown(word)))?,
         };
         Ok(())
     }
@@ -223,7 +223,7 @@ impl Reader {
         let is_word = |b: &u8| b.is_ascii_alphanumeric() || b"_-.:".contains(b);
         if !keyword.iter().all(is_word) {
             return Err(format!(
-                "{:?} is not a statement of an OBJ file",
+                "\"{}\" is not a statement of an OBJ file",
                 shown(keyword)
             ));
         }
