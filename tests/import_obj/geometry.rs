@@ -153,13 +153,30 @@ fn without_normals_or_smoothing_a_mesh_is_flat() {
 
 #[test]
 fn a_smoothing_group_weighs_normals_by_angle() {
-    // Weighted by area or by triangles, a cube's corners would lean to one side.
-    let mesh = only_mesh(&format!("s 1\n{}", cube([0.0; 3])));
-    assert_eq!(mesh.positions().len(), 8);
-    for (position, normal) in mesh.positions().iter().zip(mesh.normals()) {
-        let diagonal = position.normalize();
-        assert!((*normal - diagonal).length() < 1e-6, "{position}: {normal}");
+    // Weighted by area, or by the number of faces, the corners of a cube that is cut into
+    // triangles would lean to one side.
+    let quads = cube([0.0; 3]);
+    let cut = |line: &str| match line.split(' ').collect::<Vec<_>>()[..] {
+        ["f", a, b, c, d] => format!("f {a} {b} {c}\nf {a} {c} {d}\n"),
+        _ => format!("{line}\n"),
+    };
+    let triangles: String = quads.lines().map(cut).collect();
+    for faces in [quads, triangles] {
+        let mesh = only_mesh(&format!("s 1\n{faces}"));
+        assert_eq!(mesh.positions().len(), 8);
+        for (position, normal) in mesh.positions().iter().zip(mesh.normals()) {
+            let diagonal = position.normalize();
+            assert!((*normal - diagonal).length() < 1e-6, "{position}: {normal}");
+        }
     }
+}
+
+#[test]
+fn a_colour_that_is_no_number_is_left_out() {
+    let imported = import_text("v 0 0 0 1 0 0\nv 1 0 0 nan 0 0\nv 0 1 0 1 1\nf 1 2 3\n");
+    let colors = imported.scene.meshes[0].colors();
+    assert_eq!(colors, [[1.0, 0.0, 0.0, 1.0], [1.0; 4], [1.0; 4]]);
+    assert_eq!(warnings(&imported, WarningCode::BadAttribute)[0].count, 2);
 }
 
 #[test]

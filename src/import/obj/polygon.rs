@@ -5,7 +5,7 @@ use earcut::Earcut;
 use crate::math::DVec3;
 
 /// Polygons with more corners than this are fanned: clipping the ears of one that crosses itself
-/// takes time that grows with the square of their number.
+/// takes time that grows with the square of their number (two seconds at this one).
 const MOST_CLIPPED: usize = 20_000;
 
 /// What came out of a polygon.
@@ -51,10 +51,10 @@ impl Triangulator {
     /// triangles that turn the way it does. They hold numbers of its corners.
     pub fn cut(&mut self, ring: &[DVec3]) -> (&[[u32; 3]], Outcome) {
         self.triangles.clear();
-        let outcome = match ring.len() {
-            3 => triangle(ring, &mut self.triangles),
-            4 => quad(ring, &mut self.triangles),
-            _ => self.ears(ring),
+        let outcome = if ring.len() == 4 {
+            quad(ring, &mut self.triangles)
+        } else {
+            self.ears(ring)
         };
         if self.triangles.len() + 2 != ring.len() {
             self.triangles.clear();
@@ -123,15 +123,6 @@ fn has_area(ring: &[DVec3], area: DVec3) -> bool {
         .map(|pair| (pair[0] - first).length() * (pair[1] - first).length())
         .sum();
     area.length() > ROUNDING * sum
-}
-
-fn triangle(ring: &[DVec3], triangles: &mut Vec<[u32; 3]>) -> Outcome {
-    triangles.push([0, 1, 2]);
-    if has_area(ring, area_vector(ring)) {
-        Outcome::Covered
-    } else {
-        Outcome::NoArea
-    }
 }
 
 /// Cuts along the diagonal that leaves both halves turning as the whole does: the first where
