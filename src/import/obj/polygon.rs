@@ -4,9 +4,10 @@ use earcut::Earcut;
 
 use crate::math::DVec3;
 
-/// Polygons with more corners than this are fanned: clipping the ears of one that crosses itself
-/// takes time that grows with the square of their number (two seconds at this one).
-const MOST_CLIPPED: usize = 20_000;
+/// Clipping the ears of a polygon that crosses itself takes time that grows with the square of
+/// its corners. This many corners squared, a few seconds, may be spent so on one file; what is
+/// beyond is fanned.
+const MOST_WASTED: u64 = 1 << 30;
 
 /// What came out of a polygon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,6 +26,8 @@ pub struct Triangulator {
     flat: Vec<[f64; 2]>,
     cut: Vec<u32>,
     triangles: Vec<[u32; 3]>,
+    /// Sum of the squared numbers of corners of polygons that crossed themselves.
+    wasted: u64,
 }
 
 /// Twice the area of the polygon `ring` times its normal (Newell's sum), taken from its first
@@ -44,6 +47,7 @@ impl Triangulator {
             flat: Vec::new(),
             cut: Vec::new(),
             triangles: Vec::new(),
+            wasted: 0,
         }
     }
 
@@ -69,7 +73,8 @@ impl Triangulator {
         let Some(normal) = area.try_normalize().filter(|_| has_area(ring, area)) else {
             return Outcome::NoArea;
         };
-        if ring.len() > MOST_CLIPPED {
+        let steps = (ring.len() as u64).saturating_pow(2);
+        if self.wasted.saturating_add(steps) > MOST_WASTED {
             return Outcome::Overlapping;
         }
         let (u, v) = normal.any_orthonormal_pair();
@@ -84,6 +89,9 @@ impl Triangulator {
         if self.covers_once(area.length()) {
             Outcome::Covered
         } else {
+            // A fan at least keeps the border; what was clipped may have lost parts of it.
+            self.triangles.clear();
+            self.wasted += steps;
             Outcome::Overlapping
         }
     }
