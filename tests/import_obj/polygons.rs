@@ -197,6 +197,26 @@ fn a_polygon_that_crosses_itself_keeps_the_count_and_is_told() {
 }
 
 #[test]
+fn a_polygon_that_crosses_itself_keeps_its_border() {
+    // Bent so much that every plane it is laid into makes it cross itself.
+    let corners = [
+        [-3.9, 5.6, -9.6],
+        [6.2, 9.3, -0.3],
+        [-1.9, -8.8, -1.9],
+        [4.7, 5.1, 2.0],
+        [0.0, -0.1, -9.2],
+        [9.4, -9.1, 0.1],
+    ]
+    .map(DVec3::from_array);
+    let sum: DVec3 = cut(&corners).iter().map(|t| area_vector(t)).sum();
+    let border = area_vector(&corners);
+    assert!(
+        (sum - border).length() < 1e-5 * border.length(),
+        "{sum} {border}"
+    );
+}
+
+#[test]
 fn huge_polygons_that_cross_themselves_end_in_good_time() {
     let mut state = 1u64;
     let mut random = || {
