@@ -163,6 +163,7 @@ fn replay_one(options: &RenderOptions, job: &Job) -> Result<(), Failure> {
 /// Renders with a progress bar, until it is done or the user has seen enough.
 fn watched(job: &Job, interrupt: &Arc<Interrupt>, console: Console) -> Film {
     let settings = job.settings;
+    interrupt.rendering_begins();
     console.detail(format_args!(
         "rendering {}x{} pixels, {} samples each, on {} threads",
         job.crop.width,
@@ -178,7 +179,6 @@ fn watched(job: &Job, interrupt: &Arc<Interrupt>, console: Console) -> Film {
         ));
     }
     let progress = RenderProgress::new(console.shows_progress());
-    interrupt.rendering_begins();
     let film = render(job, &interrupt.is_requested, &|p| progress.observe(p));
     progress.finish();
     film
