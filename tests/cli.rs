@@ -140,6 +140,17 @@ fn wrong_arguments_are_named_and_exit_with_2() {
             ".exr",
         ),
         (
+            &[
+                "render",
+                "scene.obj",
+                "-o",
+                "a.exr",
+                "--layers",
+                "depth,depth",
+            ],
+            "twice",
+        ),
+        (
             &["render", "scene.obj", "-o", "a.exr", "--layers", "sky"],
             "albedo",
         ),
