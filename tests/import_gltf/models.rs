@@ -4,12 +4,12 @@
 //! The models are not part of this project. They are looked for in `HALFSHADE_MODELS`, or beside
 //! the checkout; without them the test says so and does nothing.
 
-#![allow(clippy::unwrap_used, clippy::expect_used)]
-
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use halfshade::import::{ImportOptions, Imported, import_model};
+use halfshade::material::Surface;
+use halfshade::math::Vec2;
 
 /// Rows that are an error, and the extension that it names.
 const REFUSED: &[(&str, &str)] = &[
@@ -48,7 +48,8 @@ struct Row {
     max: [f64; 3],
 }
 
-fn models() -> Option<PathBuf> {
+/// The folder of the models; `None`, with a word, where there is none.
+pub fn models() -> Option<PathBuf> {
     let beside = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/models");
     let folder = std::env::var("HALFSHADE_MODELS").unwrap_or_else(|_| beside.into());
     let folder = PathBuf::from(folder);
@@ -155,4 +156,29 @@ fn every_model_is_as_other_loaders_say() {
         }
     }
     assert!(found.is_empty(), "{}", found.join("\n"));
+}
+
+#[test]
+fn texture_transforms_bring_the_arrows_to_their_markers() {
+    let Some(models) = models() else { return };
+    let path = models.join("gltf/TextureTransformTest/glTF/TextureTransformTest.gltf");
+    let scene = import_model(&path, ImportOptions::default()).unwrap().scene;
+    // Where the model puts its green markers on the unit squares that show an arrow: there must
+    // be seen what lies beyond the arrow's tip on the diagonal of the image.
+    let markers = [
+        ("Rotation", Vec2::new(0.420_951_8, 1.016_267_5)),
+        ("Scale", Vec2::new(0.518_545, 0.518_545)),
+    ];
+    for (name, marker) in markers {
+        let material = scene.materials.iter().find(|m| m.name == name).unwrap();
+        let Surface::MetallicRoughness(surface) = &material.surface else {
+            panic!("{name}: not metallic-roughness");
+        };
+        let texture = surface.base_color.texture.unwrap();
+        let uv = texture.transform.transform_point2(marker);
+        assert!(
+            (uv - Vec2::splat(0.777_817_5)).length() < 1e-6,
+            "{name}: {uv}"
+        );
+    }
 }
