@@ -15,6 +15,8 @@ pub mod texture;
 
 pub mod camera;
 
+pub mod interaction;
+
 pub mod light;
 
 pub mod material;
@@ -22,3 +24,15 @@ pub mod material;
 pub mod scene;
 
 pub mod import;
+
+pub mod bvh;
+
+pub mod prepare;
+
+pub mod film;
+
+pub mod integrate;
+
+pub mod render;
+
+pub mod output;

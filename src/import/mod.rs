@@ -8,6 +8,7 @@ mod files;
 mod gltf;
 mod images;
 mod obj;
+pub mod scene_file;
 mod warning;
 
 use std::fmt;
@@ -17,6 +18,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use crate::scene::{Scene, Settings};
+pub use scene_file::{Defaults, SceneOptions};
 pub use warning::{Warning, WarningCode, Warnings};
 
 /// A scene as its file describes it, and what its author should know.
@@ -28,6 +30,8 @@ pub struct Imported {
     pub settings: Settings,
     /// What was ignored or repaired.
     pub warnings: Warnings,
+    /// The camera and the lights that a scene without any was given by [`import`].
+    pub defaults: Option<Defaults>,
 }
 
 /// How to import.
@@ -112,14 +116,29 @@ impl ImportError {
     }
 }
 
-/// Imports a model (`.gltf`, `.glb`, `.obj`) by itself.
+/// Imports a scene file (`.toml`), or a model by itself (`.gltf`, `.glb`, `.obj`), which is read as
+/// a scene file that names nothing else. A scene without a camera or lights gets some.
+///
+/// # Errors
+/// Where a file that it cannot do without cannot be read, or is not what its format demands.
+pub fn import(path: &Path, options: &SceneOptions) -> Result<Imported, ImportError> {
+    match extension(path).as_str() {
+        "toml" => scene_file::import_scene(path, options),
+        "gltf" | "glb" | "obj" => scene_file::import_bare(path, options),
+        _ => Err(ImportError::invalid(
+            path,
+            "neither a scene nor a model: the name does not end in .toml, .gltf, .glb or .obj",
+        )),
+    }
+}
+
+/// Imports a model (`.gltf`, `.glb`, `.obj`) as it is, without any additions.
 ///
 /// # Errors
 /// Where the file, or a file that it cannot do without, cannot be read or is not what its
 /// format demands.
 pub fn import_model(path: &Path, options: ImportOptions) -> Result<Imported, ImportError> {
-    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
-    match extension.to_ascii_lowercase().as_str() {
+    match extension(path).as_str() {
         "gltf" | "glb" => gltf::import(path, options),
         "obj" => obj::import(path),
         _ => Err(ImportError::invalid(
@@ -127,4 +146,10 @@ pub fn import_model(path: &Path, options: ImportOptions) -> Result<Imported, Imp
             "not a model: the name does not end in .gltf, .glb or .obj",
         )),
     }
+}
+
+/// What follows the last dot of the name, in lower case.
+fn extension(path: &Path) -> String {
+    let extension = path.extension().and_then(|e| e.to_str());
+    extension.unwrap_or("").to_ascii_lowercase()
 }

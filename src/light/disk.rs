@@ -1,8 +1,9 @@
 //! A one-sided disk of constant radiance.
 
-use super::LightSample;
+use super::spherical_ellipse::SphericalEllipse;
+use super::{LightSample, ShadowEnd, shadow_point, unit, weigh};
 use crate::color::Rgb;
-use crate::math::{Ray, UnitVec3, Vec2, Vec3};
+use crate::math::{DVec3, Ray, UnitVec3, Vec2, Vec3};
 
 /// A one-sided disk of constant radiance.
 #[derive(Clone, Copy, Debug)]
@@ -22,23 +23,48 @@ pub struct DiskLight {
 }
 
 impl DiskLight {
-    /// See [`super::Light::sample`].
+    /// See [`super::Light::sample`]. Nearly uniform by solid angle, so that the weights hardly
+    /// vary, and are bounded however near the disk is.
     pub fn sample(&self, point: Vec3, u: Vec2) -> Option<LightSample> {
-        todo!("{point} {u}")
+        let point = point.as_dvec3();
+        let center = self.center.as_dvec3() - point;
+        let seen = SphericalEllipse::of_disk(center, self.exact_normal(), self.radius.into())?;
+        let sample = seen.sample(u);
+        Some(LightSample {
+            wi: unit(sample.direction),
+            weight: weigh(self.radiance, sample.inverse_density)?,
+            shadow: ShadowEnd::Point(shadow_point(point + sample.on_disk)),
+        })
+    }
+
+    /// Of length 1 to double precision.
+    fn exact_normal(&self) -> DVec3 {
+        self.normal.as_dvec3().normalize()
     }
 
     /// See [`super::Light::is_delta`].
     pub fn is_delta(&self) -> bool {
-        todo!()
+        !(self.radius > 0.0)
     }
 
     /// See [`super::Light::placed`].
     pub fn placed(&self, scale: f32, offset: Vec3) -> Self {
-        todo!("{scale} {offset}")
+        Self {
+            center: self.center * scale + offset,
+            radius: self.radius * scale,
+            ..*self
+        }
     }
 
     /// See [`super::Light::emitted`].
     pub fn emitted(&self, ray: &Ray) -> Option<(f32, Rgb)> {
-        todo!("{ray:?}")
+        if !self.is_visible {
+            return None;
+        }
+        let center = self.center.as_dvec3() - ray.origin.as_dvec3();
+        let (t, from_center) = super::plane_hit(ray, center, self.exact_normal())?;
+        let radius = f64::from(self.radius);
+        (radius > 0.0 && from_center.length_squared() <= radius * radius)
+            .then_some((t, self.radiance))
     }
 }

@@ -5,20 +5,24 @@
 
 mod disk;
 mod distant;
+mod falloff;
 mod point;
 mod rectangle;
 mod sphere;
+mod spherical_ellipse;
+mod spherical_rectangle;
 mod spot;
 
 pub use disk::DiskLight;
 pub use distant::DistantLight;
-pub use point::{Falloff, PointLight};
+pub use falloff::Falloff;
+pub use point::PointLight;
 pub use rectangle::RectangleLight;
 pub use sphere::SphereLight;
 pub use spot::SpotLight;
 
 use crate::color::Rgb;
-use crate::math::{Ray, UnitVec3, Vec2, Vec3};
+use crate::math::{DVec3, Ray, UnitVec3, Vec2, Vec3};
 
 /// A light of any kind.
 #[derive(Clone, Copy, Debug)]
@@ -130,4 +134,55 @@ impl Light {
             Light::Sphere(light) => light.radiance.is_black(),
         }
     }
+}
+
+/// The way from a shading point to a light, in double precision: no square of a distance
+/// overflows or vanishes.
+struct Toward {
+    /// Of length 1.
+    direction: DVec3,
+    distance: f64,
+}
+
+impl Toward {
+    /// `None` where they coincide or are not finite.
+    fn new(point: Vec3, light: Vec3) -> Option<Self> {
+        let way = light.as_dvec3() - point.as_dvec3();
+        let distance = way.length();
+        (distance > 0.0 && distance.is_finite()).then(|| Self {
+            direction: way / distance,
+            distance,
+        })
+    }
+
+    fn unit(&self) -> UnitVec3 {
+        unit(self.direction)
+    }
+}
+
+/// A vector of length 1, in single precision.
+fn unit(direction: DVec3) -> UnitVec3 {
+    UnitVec3::from_normalized(direction.as_vec3())
+}
+
+/// `color * factor`; `None` where that is black, or more than single precision holds.
+fn weigh(color: Rgb, factor: f64) -> Option<Rgb> {
+    let weight = color.map(|c| (f64::from(c) * factor) as f32);
+    (weight.is_finite() && !weight.is_black()).then_some(weight)
+}
+
+/// In single precision, kept finite for lights that reach beyond it.
+fn shadow_point(point: DVec3) -> Vec3 {
+    let largest = DVec3::splat(f64::from(f32::MAX));
+    point.clamp(-largest, largest).as_vec3()
+}
+
+/// Where `ray` meets, from the front, the plane through `center` (relative to the ray's origin)
+/// across the unit vector `normal`: the ray's parameter there, and the place relative to `center`.
+fn plane_hit(ray: &Ray, center: DVec3, normal: DVec3) -> Option<(f32, DVec3)> {
+    let direction = ray.direction.as_dvec3();
+    let approach = direction.dot(normal);
+    let exact_t = center.dot(normal) / approach;
+    let t = exact_t as f32;
+    (approach < 0.0 && t > ray.t_min && t < ray.t_max).then(|| (t, direction * exact_t - center))
 }

@@ -1,8 +1,9 @@
 //! A point light; with a radius it casts soft shadows.
 
-use super::LightSample;
+use super::{Falloff, LightSample, ShadowEnd, Toward, weigh};
 use crate::color::Rgb;
-use crate::math::{Ray, UnitVec3, Vec2, Vec3};
+use crate::math::{Frame, UnitVec3, Vec2, Vec3};
+use crate::sampling::square_to_disk;
 
 /// A point light; with a radius it casts soft shadows.
 #[derive(Clone, Copy, Debug)]
@@ -23,44 +24,45 @@ pub struct PointLight {
 impl PointLight {
     /// See [`super::Light::sample`].
     pub fn sample(&self, point: Vec3, u: Vec2) -> Option<LightSample> {
-        todo!("{point} {u}")
+        let toward = Toward::new(point, self.position)?;
+        let wi = toward.unit();
+        Some(LightSample {
+            wi,
+            weight: weigh(self.intensity, self.falloff.attenuation(toward.distance))?,
+            shadow: shadow_end(self.position, self.radius, wi, u),
+        })
     }
 
     /// See [`super::Light::is_delta`].
     pub fn is_delta(&self) -> bool {
-        todo!()
+        !has_extent(self.radius)
     }
 
     /// See [`super::Light::placed`].
     pub fn placed(&self, scale: f32, offset: Vec3) -> Self {
-        todo!("{scale} {offset}")
-    }
-
-    /// See [`super::Light::emitted`].
-    pub fn emitted(&self, ray: &Ray) -> Option<(f32, Rgb)> {
-        todo!("{ray:?}")
+        Self {
+            position: self.position * scale + offset,
+            radius: self.radius * scale,
+            falloff: self.falloff.placed(scale),
+            ..*self
+        }
     }
 }
 
-/// Attenuation with distance d: `1 / (constant + linear d + quadratic d²)`, and none beyond `range`.
-#[derive(Clone, Copy, Debug)]
-pub struct Falloff {
-    /// At any distance.
-    pub constant: f32,
-    /// Per unit of distance.
-    pub linear: f32,
-    /// Per unit of distance squared.
-    pub quadratic: f32,
-    /// Distance at which the light has faded to nothing (`KHR_lights_punctual`); infinite for physical lights.
-    pub range: f32,
+/// Whether a light of this radius casts soft shadows.
+pub(super) fn has_extent(radius: f32) -> bool {
+    radius > 0.0
 }
 
-impl Falloff {
-    /// The inverse square law.
-    pub const INVERSE_SQUARE: Self = Self {
-        constant: 0.0,
-        linear: 0.0,
-        quadratic: 1.0,
-        range: f32::INFINITY,
-    };
+/// A point, uniform by area, of the disk of `radius` around `position` across `wi`; `position`
+/// itself, whatever `u`, without a radius.
+pub(super) fn shadow_end(position: Vec3, radius: f32, wi: UnitVec3, u: Vec2) -> ShadowEnd {
+    if !has_extent(radius) {
+        return ShadowEnd::Point(position);
+    }
+    let frame = Frame::around(wi);
+    let disk = radius * square_to_disk(u);
+    let end = position + frame.tangent * disk.x + frame.bitangent * disk.y;
+    // A radius near the largest f32 may overflow here.
+    ShadowEnd::Point(end.clamp(Vec3::splat(f32::MIN), Vec3::splat(f32::MAX)))
 }

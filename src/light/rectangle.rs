@@ -1,8 +1,9 @@
 //! A one-sided rectangle of constant radiance.
 
-use super::LightSample;
+use super::spherical_rectangle::SphericalRectangle;
+use super::{LightSample, ShadowEnd, shadow_point, unit, weigh};
 use crate::color::Rgb;
-use crate::math::{Ray, UnitVec3, Vec2, Vec3};
+use crate::math::{DVec2, DVec3, Ray, Vec2, Vec3};
 
 /// A one-sided rectangle of constant radiance.
 #[derive(Clone, Copy, Debug)]
@@ -21,24 +22,84 @@ pub struct RectangleLight {
     pub samples: u32,
 }
 
+/// The light's edges in double precision.
+struct Edges {
+    half_u: DVec3,
+    half_v: DVec3,
+    /// `half_u × half_v`: a quarter of the area long.
+    cross: DVec3,
+}
+
 impl RectangleLight {
-    /// See [`super::Light::sample`].
+    /// See [`super::Light::sample`]. Uniform by solid angle where the edges are perpendicular,
+    /// unless it looks so small that area does as well; by area otherwise.
     pub fn sample(&self, point: Vec3, u: Vec2) -> Option<LightSample> {
-        todo!("{point} {u}")
+        let edges = self.edges()?;
+        let point = point.as_dvec3();
+        let center = self.center.as_dvec3() - point;
+        let normal = edges.cross.normalize();
+        let height = -center.dot(normal);
+        if !(height > 0.0 && height.is_finite()) {
+            return None;
+        }
+        let seen = SphericalRectangle::new(center, edges.half_u, edges.half_v, height);
+        let place = match &seen {
+            Some(seen) => seen.sample(u),
+            None => 2.0 * u.as_dvec2() - DVec2::ONE,
+        };
+        let to_light = center + edges.half_u * place.x + edges.half_v * place.y;
+        let distance = to_light.length();
+        let inverse_density = match &seen {
+            Some(seen) => seen.solid_angle(),
+            None => 4.0 * edges.cross.length() * (height / distance) / distance / distance,
+        };
+        Some(LightSample {
+            wi: unit(to_light / distance),
+            weight: weigh(self.radiance, inverse_density)?,
+            shadow: ShadowEnd::Point(shadow_point(point + to_light)),
+        })
+    }
+
+    /// `None` where they enclose no area.
+    fn edges(&self) -> Option<Edges> {
+        let (half_u, half_v) = (self.half_u.as_dvec3(), self.half_v.as_dvec3());
+        let cross = half_u.cross(half_v);
+        let has_area = cross != DVec3::ZERO && cross.is_finite();
+        has_area.then_some(Edges {
+            half_u,
+            half_v,
+            cross,
+        })
     }
 
     /// See [`super::Light::is_delta`].
     pub fn is_delta(&self) -> bool {
-        todo!()
+        self.edges().is_none()
     }
 
     /// See [`super::Light::placed`].
     pub fn placed(&self, scale: f32, offset: Vec3) -> Self {
-        todo!("{scale} {offset}")
+        Self {
+            center: self.center * scale + offset,
+            half_u: self.half_u * scale,
+            half_v: self.half_v * scale,
+            ..*self
+        }
     }
 
     /// See [`super::Light::emitted`].
     pub fn emitted(&self, ray: &Ray) -> Option<(f32, Rgb)> {
-        todo!("{ray:?}")
+        if !self.is_visible {
+            return None;
+        }
+        let edges = self.edges()?;
+        let center = self.center.as_dvec3() - ray.origin.as_dvec3();
+        let normal = edges.cross.normalize();
+        let (t, from_center) = super::plane_hit(ray, center, normal)?;
+        // from_center = u half_u + v half_v, by Cramer's rule.
+        let quarter_area = edges.cross.length();
+        let u = from_center.cross(edges.half_v).dot(normal) / quarter_area;
+        let v = edges.half_u.cross(from_center).dot(normal) / quarter_area;
+        (u.abs() <= 1.0 && v.abs() <= 1.0).then_some((t, self.radiance))
     }
 }

@@ -1,10 +1,13 @@
 //! A sphere of constant radiance.
 
-use super::LightSample;
-use crate::color::Rgb;
-use crate::math::{Ray, UnitVec3, Vec2, Vec3};
+use std::f64::consts::TAU;
 
-/// A sphere of constant radiance.
+use super::{LightSample, ShadowEnd, Toward, shadow_point, unit, weigh};
+use crate::color::Rgb;
+use crate::math::{DVec3, Ray, Vec2, Vec3};
+use crate::sampling::square_to_cone;
+
+/// A sphere of constant radiance, seen from outside and from inside.
 #[derive(Clone, Copy, Debug)]
 pub struct SphereLight {
     /// Its centre.
@@ -20,23 +23,80 @@ pub struct SphereLight {
 }
 
 impl SphereLight {
-    /// See [`super::Light::sample`].
+    /// See [`super::Light::sample`]. Uniform by solid angle: in the cone that the sphere fills,
+    /// or in all directions from inside it.
     pub fn sample(&self, point: Vec3, u: Vec2) -> Option<LightSample> {
-        todo!("{point} {u}")
+        if self.is_delta() {
+            return None;
+        }
+        let radius = f64::from(self.radius);
+        // At the very centre every axis will do.
+        let toward = Toward::new(point, self.center).unwrap_or(Toward {
+            direction: DVec3::Z,
+            distance: 0.0,
+        });
+        let distance = toward.distance;
+        let is_inside = distance <= radius;
+        let one_minus_cos = if is_inside {
+            2.0
+        } else {
+            let sin = radius / distance;
+            let cos = ((distance - radius) * (distance + radius)).sqrt() / distance;
+            sin * sin / (1.0 + cos)
+        };
+
+        let local = square_to_cone(u, one_minus_cos);
+        let (tangent, bitangent) = toward.direction.any_orthonormal_pair();
+        let direction = tangent * local.x + bitangent * local.y + toward.direction * local.z;
+        // The way along the direction to the surface: the near side from outside, the only one
+        // from inside.
+        let sin_squared = local.x * local.x + local.y * local.y;
+        let half_chord = (radius * radius - distance * distance * sin_squared)
+            .max(0.0)
+            .sqrt();
+        let along = distance * local.z + if is_inside { half_chord } else { -half_chord };
+        Some(LightSample {
+            wi: unit(direction),
+            weight: weigh(self.radiance, TAU * one_minus_cos)?,
+            shadow: ShadowEnd::Point(shadow_point(point.as_dvec3() + direction * along)),
+        })
     }
 
     /// See [`super::Light::is_delta`].
     pub fn is_delta(&self) -> bool {
-        todo!()
+        !(self.radius > 0.0)
     }
 
     /// See [`super::Light::placed`].
     pub fn placed(&self, scale: f32, offset: Vec3) -> Self {
-        todo!("{scale} {offset}")
+        Self {
+            center: self.center * scale + offset,
+            radius: self.radius * scale,
+            ..*self
+        }
     }
 
     /// See [`super::Light::emitted`].
     pub fn emitted(&self, ray: &Ray) -> Option<(f32, Rgb)> {
-        todo!("{ray:?}")
+        if !self.is_visible || self.is_delta() {
+            return None;
+        }
+        let radius = f64::from(self.radius);
+        let direction = ray.direction.as_dvec3();
+        let length = direction.length();
+        let direction = direction / length;
+        let center = self.center.as_dvec3() - ray.origin.as_dvec3();
+        let along = center.dot(direction);
+        let across = center - direction * along;
+        let half_chord_squared = radius * radius - across.length_squared();
+        if !(half_chord_squared >= 0.0) {
+            return None;
+        }
+        let half_chord = half_chord_squared.sqrt();
+        [along - half_chord, along + half_chord]
+            .map(|distance| (distance / length) as f32)
+            .into_iter()
+            .find(|&t| t > ray.t_min && t < ray.t_max)
+            .map(|t| (t, self.radiance))
     }
 }

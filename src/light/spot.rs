@@ -1,8 +1,9 @@
 //! A point that shines into a cone.
 
-use super::LightSample;
+use super::point::{has_extent, shadow_end};
+use super::{Falloff, LightSample, Toward, weigh};
 use crate::color::Rgb;
-use crate::math::{Ray, UnitVec3, Vec2, Vec3};
+use crate::math::{UnitVec3, Vec2, Vec3};
 
 /// A point that shines into a cone.
 #[derive(Clone, Copy, Debug)]
@@ -22,27 +23,55 @@ pub struct SpotLight {
     /// Shadow rays per shading point.
     pub samples: u32,
     /// How the light weakens with distance.
-    pub falloff: super::Falloff,
+    pub falloff: Falloff,
 }
 
 impl SpotLight {
     /// See [`super::Light::sample`].
     pub fn sample(&self, point: Vec3, u: Vec2) -> Option<LightSample> {
-        todo!("{point} {u}")
+        let toward = Toward::new(point, self.position)?;
+        let wi = toward.unit();
+        let attenuation = self.cone_share(wi) * self.falloff.attenuation(toward.distance);
+        Some(LightSample {
+            wi,
+            weight: weigh(self.intensity, attenuation)?,
+            shadow: shadow_end(self.position, self.radius, wi, u),
+        })
+    }
+
+    /// Share of the intensity that leaves against `wi`: 1 in the inner cone, 0 beyond the outer
+    /// one, the square of a ramp that is linear in the cosine between them (`KHR_lights_punctual`).
+    fn cone_share(&self, wi: UnitVec3) -> f64 {
+        // Cosines by their distance from 1, so that cones as narrow as a laser's keep their shape:
+        // 1 - cos a = 2 sin²(a/2), and for two unit vectors |v - w|² / 2.
+        let one_minus_cos = 0.5 * (-wi.as_dvec3()).distance_squared(self.direction.as_dvec3());
+        let inner = one_minus_cos_of(self.inner_angle_radians);
+        let outer = one_minus_cos_of(self.outer_angle_radians);
+        if one_minus_cos >= outer {
+            0.0
+        } else if one_minus_cos <= inner {
+            1.0
+        } else {
+            ((outer - one_minus_cos) / (outer - inner)).powi(2)
+        }
     }
 
     /// See [`super::Light::is_delta`].
     pub fn is_delta(&self) -> bool {
-        todo!()
+        !has_extent(self.radius)
     }
 
     /// See [`super::Light::placed`].
     pub fn placed(&self, scale: f32, offset: Vec3) -> Self {
-        todo!("{scale} {offset}")
+        Self {
+            position: self.position * scale + offset,
+            radius: self.radius * scale,
+            falloff: self.falloff.placed(scale),
+            ..*self
+        }
     }
+}
 
-    /// See [`super::Light::emitted`].
-    pub fn emitted(&self, ray: &Ray) -> Option<(f32, Rgb)> {
-        todo!("{ray:?}")
-    }
+fn one_minus_cos_of(angle_radians: f32) -> f64 {
+    2.0 * (0.5 * f64::from(angle_radians)).sin().powi(2)
 }

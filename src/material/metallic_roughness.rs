@@ -1,6 +1,8 @@
 //! glTF's metallic-roughness model.
 
+use super::{Bsdf, Glossy, Lookup, Specular};
 use crate::color::Rgb;
+use crate::texture::Encoding;
 use crate::texture::{TexturedRgb, TexturedScalar};
 
 /// The parameters of a glTF material, with those extensions that change its base layer.
@@ -46,6 +48,61 @@ impl Default for MetallicRoughness {
             thickness: TexturedScalar::constant(0.0),
             attenuation_color: Rgb::WHITE,
             attenuation_distance: f32::INFINITY,
+        }
+    }
+}
+
+/// Below this roughness a `whitted` picture shows mirror images, fading in as it falls to 0.
+const MIRROR_ROUGHNESS: f32 = 0.3;
+
+/// The smallest α of the microfacet lobe: a perfect mirror shows no point light at all.
+const MIN_ALPHA: f32 = 1e-4;
+
+impl MetallicRoughness {
+    /// How it scatters light where `lookup` is.
+    ///
+    /// Diffuse base under GGX, as appendix B of the glTF 2.0 specification has it. Rough
+    /// reflection of the surroundings is left to `ambient`; smooth surfaces mirror them.
+    pub fn bsdf(&self, lookup: &Lookup) -> Bsdf {
+        let base = lookup.rgb(&self.base_color) * lookup.vertex_rgb();
+        let metallic = lookup.scalar(&self.metallic).clamp(0.0, 1.0);
+        let roughness = lookup.scalar(&self.roughness).clamp(0.0, 1.0);
+        let strength = lookup.scalar(&self.specular).clamp(0.0, 1.0);
+        let ratio = (self.index_of_refraction - 1.0) / (self.index_of_refraction + 1.0);
+        let dielectric = lookup.rgb(&self.specular_color) * (ratio * ratio);
+        let dielectric = dielectric.map(|c| c.min(1.0)) * strength;
+        let f0 = dielectric.lerp(base, metallic);
+        let f90 = strength + (1.0 - strength) * metallic;
+
+        let transmission = lookup.scalar(&self.transmission).clamp(0.0, 1.0);
+        let transmit = base * ((1.0 - metallic) * transmission);
+        let mirror = (1.0 - roughness / MIRROR_ROUGHNESS).max(0.0).powi(2);
+        // Glass gets its reflection from Fresnel's equations on what it transmits.
+        let mirror = mirror * (1.0 - (1.0 - metallic) * transmission);
+        let alpha = (roughness * roughness).max(MIN_ALPHA);
+        // Energy that Fresnel reflects does not reach the diffuse layer below.
+        let entering = 1.0 - dielectric.max_channel();
+        Bsdf {
+            diffuse: base * ((1.0 - metallic) * (1.0 - transmission) * entering),
+            glossy: Glossy::Ggx { f0, f90, alpha },
+            specular: Specular {
+                reflect: f0 * mirror,
+                reflect_grazing: (Rgb::splat(f90) - f0) * mirror,
+                transmit,
+                index_of_refraction: self.index_of_refraction,
+                is_thin: self.thickness.factor == 0.0,
+            },
+        }
+    }
+
+    /// Share of ambient light that arrives where `lookup` is, in `[0, 1]`.
+    pub fn occlusion(&self, lookup: &Lookup) -> f32 {
+        match &self.occlusion.texture {
+            None => 1.0,
+            Some(texture) => {
+                let texel = lookup.texel(texture, Encoding::Linear)[0];
+                1.0 + self.occlusion.factor * (texel - 1.0)
+            }
         }
     }
 }

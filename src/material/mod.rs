@@ -2,9 +2,15 @@
 //!
 //! A [`Material`] is evaluated at an interaction and gives a [`Bsdf`]; one file a kind.
 
+mod bsdf;
+mod fresnel;
+mod lookup;
 mod metallic_roughness;
 mod phong;
 
+pub use bsdf::{Bsdf, Glossy, Specular};
+pub use fresnel::{fresnel_dielectric, reflect, refract};
+pub use lookup::{Lookup, MAX_UV_SETS};
 pub use metallic_roughness::MetallicRoughness;
 pub use phong::Phong;
 
@@ -72,6 +78,62 @@ pub struct NormalMap {
 }
 
 impl Material {
+    /// How it scatters light where `lookup` is.
+    pub fn bsdf(&self, lookup: &Lookup) -> Bsdf {
+        match &self.surface {
+            Surface::Phong(phong) => phong.bsdf(lookup),
+            Surface::MetallicRoughness(surface) => surface.bsdf(lookup),
+            Surface::Unlit(_) => bsdf::BLACK,
+        }
+    }
+
+    /// Radiance that it gives off where `lookup` is; an unlit surface gives off its colour.
+    pub fn emitted(&self, lookup: &Lookup) -> Rgb {
+        let emission = lookup.rgb(&self.emission);
+        match &self.surface {
+            Surface::Unlit(color) => emission + lookup.rgb(color) * lookup.vertex_rgb(),
+            _ => emission,
+        }
+    }
+
+    /// Share of ambient light that arrives where `lookup` is, in `[0, 1]`.
+    pub fn occlusion(&self, lookup: &Lookup) -> f32 {
+        match &self.surface {
+            Surface::MetallicRoughness(surface) => surface.occlusion(lookup),
+            Surface::Phong(_) | Surface::Unlit(_) => 1.0,
+        }
+    }
+
+    /// Diffuse reflectance or base colour where `lookup` is.
+    pub fn albedo(&self, lookup: &Lookup) -> Rgb {
+        let color = match &self.surface {
+            Surface::Phong(phong) => &phong.diffuse,
+            Surface::MetallicRoughness(surface) => &surface.base_color,
+            Surface::Unlit(color) => color,
+        };
+        lookup.rgb(color) * lookup.vertex_rgb()
+    }
+
+    /// Opacity in `[0, 1]` where `lookup` is: 0 lets everything pass, and masks are 0 or 1.
+    pub fn opacity(&self, lookup: &Lookup) -> f32 {
+        let opacity = || lookup.scalar(&self.opacity) * lookup.color[3];
+        match self.alpha_mode {
+            AlphaMode::Opaque => 1.0,
+            AlphaMode::Mask { cutoff } => f32::from(u8::from(opacity() >= cutoff)),
+            AlphaMode::Blend => opacity().clamp(0.0, 1.0),
+        }
+    }
+
+    /// Whether no light passes it anywhere: neither holes nor glass.
+    pub fn is_opaque(&self) -> bool {
+        let is_glass = match &self.surface {
+            Surface::Phong(phong) => !phong.transmit.is_black(),
+            Surface::MetallicRoughness(surface) => surface.transmission.factor > 0.0,
+            Surface::Unlit(_) => false,
+        };
+        self.alpha_mode == AlphaMode::Opaque && !is_glass
+    }
+
     /// A matte material of the given reflectance.
     pub fn matte(name: impl Into<String>, reflectance: Rgb) -> Self {
         Self {

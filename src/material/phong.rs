@@ -1,5 +1,6 @@
 //! Lambert plus normalised Phong, with mirror and refraction.
 
+use super::{Bsdf, Glossy, Lookup, Specular};
 use crate::color::Rgb;
 use crate::texture::{TexturedRgb, TexturedScalar};
 
@@ -30,6 +31,29 @@ impl Phong {
             reflect: Rgb::BLACK,
             transmit: Rgb::BLACK,
             index_of_refraction: 1.0,
+        }
+    }
+
+    /// How it scatters light where `lookup` is.
+    pub fn bsdf(&self, lookup: &Lookup) -> Bsdf {
+        let reflectance = lookup.rgb(&self.specular);
+        Bsdf {
+            diffuse: lookup.rgb(&self.diffuse) * lookup.vertex_rgb(),
+            glossy: if reflectance.is_black() {
+                Glossy::None
+            } else {
+                Glossy::Phong {
+                    reflectance,
+                    exponent: lookup.scalar(&self.exponent).max(0.0),
+                }
+            },
+            specular: Specular {
+                reflect: self.reflect,
+                reflect_grazing: Rgb::BLACK,
+                transmit: self.transmit,
+                index_of_refraction: self.index_of_refraction,
+                is_thin: false,
+            },
         }
     }
 }

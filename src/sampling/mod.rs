@@ -3,8 +3,12 @@
 //! Every number is a pure function of (seed, pixel, sample index, dimension); no state is
 //! carried from one sample to the next.
 
+mod cells;
+mod key;
 mod pattern;
 mod sampler;
+mod warp;
 
 pub use pattern::{Pattern, SamplingConfig, Target};
 pub use sampler::Sampler;
+pub use warp::{square_to_cone, square_to_disk};

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::cells::Cells;
+
 /// How the samples of one pixel, or of one light, are laid out in the unit square.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -55,9 +57,13 @@ impl Default for SamplingConfig {
 
 impl Pattern {
     /// The number of samples that are taken where `count` are asked for: grid and jittered
-    /// round up to m × n cells that are as square as can be, the others take what is asked for.
+    /// round up to m × n cells that are nearly square (⌊√count⌋ rows and as many columns as it
+    /// takes: 81 gives 9 × 9, 10 gives 4 × 3), the others take what is asked for. At least 1.
     pub fn cells(self, count: u32) -> u32 {
-        todo!("{count}")
+        match self {
+            Self::Grid | Self::Jittered => Cells::at_least(count).count(),
+            Self::Random | Self::Sobol => count.max(1),
+        }
     }
 }
 

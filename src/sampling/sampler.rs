@@ -1,43 +1,134 @@
 //! The numbers of one camera sample.
 
-use crate::math::{UVec2, Vec2};
+use crate::math::{ONE_MINUS_EPSILON, UVec2, Vec2};
 
-use super::SamplingConfig;
+use super::cells::Cells;
+use super::key::Key;
+use super::warp::square_to_disk;
+use super::{Pattern, SamplingConfig, Target};
 
 /// All numbers of one camera sample: a pure function of (seed, pixel, index, dimension).
 ///
 /// It has no state: asking twice gives the same answer, and asking for less changes nothing else.
+///
+/// Dimensions come in sets: points of one set avoid each other, points of different sets have
+/// nothing to do with each other. Each use of a sample has a set of its own, except that where the
+/// sample lands in its pixel and on the first light form one four-dimensional Sobol set.
 #[derive(Clone, Copy, Debug)]
 pub struct Sampler {
-    config: SamplingConfig,
-    pixel: UVec2,
+    pattern: Pattern,
+    target: Target,
+    /// Of all samples of the pixel; used by patterns that have cells.
+    cells: Cells,
+    /// Of seed and pixel.
+    key: Key,
     index: u32,
 }
 
+/// Names a set of dimensions.
+#[derive(Clone, Copy, Debug)]
+struct DimensionSet(u64);
+
+impl DimensionSet {
+    const CAMERA: Self = Self(u64::MAX);
+    const LENS: Self = Self(u64::MAX - 1);
+
+    fn light(vertex: u32, light: u32) -> Self {
+        Self(u64::from(vertex) << 32 | u64::from(light))
+    }
+}
+
 impl Sampler {
-    /// Sample `index` of `config.samples_per_pixel()` of `pixel`.
+    /// Sample `index` of `config.samples_per_pixel()` of `pixel`. An index past them goes on
+    /// with more points of the same pattern.
     pub fn new(config: &SamplingConfig, pixel: UVec2, index: u32) -> Self {
+        let pixel = u64::from(pixel.y) << 32 | u64::from(pixel.x);
         Self {
-            config: *config,
-            pixel,
+            pattern: config.pattern,
+            target: config.target,
+            cells: Cells::at_least(config.samples),
+            key: Key::new(config.seed).with(pixel),
             index,
         }
     }
 
     /// Where in its pixel the sample lands, in `[0, 1)²`.
     pub fn camera(&self) -> Vec2 {
-        todo!("{:?}", (self.config, self.pixel, self.index))
+        let u = self.point(DimensionSet::CAMERA);
+        match self.target {
+            Target::Rectangle => u,
+            Target::Circle => {
+                let inscribed = 0.5 + 0.5 * square_to_disk(u);
+                inscribed.clamp(Vec2::ZERO, Vec2::splat(ONE_MINUS_EPSILON))
+            }
+        }
     }
 
     /// Where on the lens it starts, in the unit disk.
     pub fn lens(&self) -> Vec2 {
-        todo!()
+        square_to_disk(self.point(DimensionSet::LENS))
     }
 
     /// Point `j` of the `count` that sample light number `light` at the path's vertex number
     /// `vertex` (1 is what the camera sees), in `[0, 1)²`. `count` is one that
-    /// [`super::Pattern::cells`] gave.
+    /// [`Pattern::cells`] gave.
+    ///
+    /// With a `count` of 1 the points of all camera samples of the pixel form the pattern. With
+    /// more, each camera sample has its own pattern on the light (all of them together are one for Sobol).
     pub fn light(&self, vertex: u32, light: u32, j: u32, count: u32) -> Vec2 {
-        todo!("{vertex} {light} {j} {count}")
+        let set = DimensionSet::light(vertex, light);
+        if count > 1 {
+            return self.point_of(set, j, count);
+        }
+        match (self.pattern, vertex, light) {
+            (Pattern::Sobol, 1, 0) => {
+                let [_, _, u, v] = self.sobol(DimensionSet::CAMERA, u64::from(self.index));
+                Vec2::new(u, v)
+            }
+            _ => self.point(set),
+        }
+    }
+
+    /// The one point that this sample has in `set`.
+    fn point(&self, set: DimensionSet) -> Vec2 {
+        match self.pattern {
+            Pattern::Grid => self.cells.point(self.key.with(set.0), self.index, false),
+            Pattern::Jittered => self.cells.point(self.key.with(set.0), self.index, true),
+            Pattern::Random => self.random(set, u64::from(self.index)),
+            Pattern::Sobol => self.sobol_2d(set, u64::from(self.index)),
+        }
+    }
+
+    /// Point `j` of the `count` that this sample has in `set`.
+    fn point_of(&self, set: DimensionSet, j: u32, count: u32) -> Vec2 {
+        // Up to 2^64 in one pixel: the numbers of all its samples' points one after another.
+        let number = u64::from(self.index) * u64::from(count) + u64::from(j);
+        let key = || self.key.with(set.0).with(u64::from(self.index));
+        match self.pattern {
+            Pattern::Grid => Cells::at_least(count).point(key(), j, false),
+            Pattern::Jittered => Cells::at_least(count).point(key(), j, true),
+            Pattern::Random => self.random(set, number),
+            Pattern::Sobol => self.sobol_2d(set, number),
+        }
+    }
+
+    fn random(&self, set: DimensionSet, number: u64) -> Vec2 {
+        self.key.with(set.0).with(number).point()
+    }
+
+    fn sobol_2d(&self, set: DimensionSet, number: u64) -> Vec2 {
+        let [u, v, _, _] = self.sobol(set, number);
+        Vec2::new(u, v)
+    }
+
+    /// Point `number` of an Owen-scrambled, shuffled Sobol sequence.
+    ///
+    /// The tables end at 2^16 points; there the next independent scramble begins, so that from
+    /// then on the error falls as that of independent batches.
+    fn sobol(&self, set: DimensionSet, number: u64) -> [f32; 4] {
+        const LENGTH_BITS: u32 = 16;
+        let seed = self.key.with(set.0).with(number >> LENGTH_BITS).bits() as u32;
+        let index = (number & ((1 << LENGTH_BITS) - 1)) as u32;
+        sobol_burley::sample_4d(index, 0, seed)
     }
 }

@@ -57,6 +57,8 @@ pub struct Settings {
     pub integrator: IntegratorKind,
     /// Scattering events of a path: 1 is direct light only.
     pub max_depth: u32,
+    /// Shadow rays per shading point, in place of what each light says.
+    pub light_samples: Option<u32>,
 }
 
 impl Default for Settings {
@@ -66,6 +68,7 @@ impl Default for Settings {
             sampling: SamplingConfig::default(),
             integrator: IntegratorKind::Whitted,
             max_depth: 8,
+            light_samples: None,
         }
     }
 }

@@ -1,0 +1,141 @@
+//! Arguments that are made of several parts.
+
+use std::str::FromStr;
+
+use halfshade::film::Rect;
+use halfshade::math::UVec2;
+
+/// The largest width and height of a film, as in scene files.
+const LONGEST_SIDE: u32 = 1 << 16;
+
+/// The most pixels of a film, as in scene files.
+const MOST_PIXELS: u64 = 1 << 28;
+
+/// `1280x720`.
+pub fn size(text: &str) -> Result<UVec2, String> {
+    let wanted = || {
+        format!(
+            "a size is like 1280x720, with sides from 1 to {LONGEST_SIDE} \
+             and at most {MOST_PIXELS} pixels"
+        )
+    };
+    let (width, height) = text.split_once(['x', 'X']).ok_or_else(wanted)?;
+    let side = |text: &str| {
+        let side: Option<u32> = text.trim().parse().ok();
+        side.filter(|side| (1..=LONGEST_SIDE).contains(side))
+    };
+    match (side(width), side(height)) {
+        (Some(width), Some(height)) if u64::from(width) * u64::from(height) <= MOST_PIXELS => {
+            Ok(UVec2::new(width, height))
+        }
+        _ => Err(wanted()),
+    }
+}
+
+/// `x,y,w,h`: the upper left pixel, columns and rows.
+pub fn crop(text: &str) -> Result<Rect, String> {
+    let [x, y, width, height] = numbers(text, "x,y,w,h")?;
+    if width == 0 || height == 0 {
+        return Err("a crop has at least one pixel".to_owned());
+    }
+    Ok(Rect {
+        x,
+        y,
+        width,
+        height,
+    })
+}
+
+/// One sample of one pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct SampleId {
+    /// Which pixel of the whole film.
+    pub pixel: UVec2,
+    /// Which of its samples.
+    pub index: u32,
+}
+
+/// `x,y,i`: column, row, index of the sample.
+pub fn sample_id(text: &str) -> Result<SampleId, String> {
+    let [x, y, index] = numbers(text, "x,y,i")?;
+    Ok(SampleId {
+        pixel: UVec2::new(x, y),
+        index,
+    })
+}
+
+fn numbers<const N: usize>(text: &str, form: &str) -> Result<[u32; N], String> {
+    let numbers: Result<Vec<u32>, _> = text.split(',').map(|n| u32::from_str(n.trim())).collect();
+    numbers
+        .ok()
+        .and_then(|numbers| numbers.try_into().ok())
+        .ok_or_else(|| format!("not {N} whole numbers {form}"))
+}
+
+/// `PATH=VALUE`.
+pub fn assignment(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((path, value)) if !path.trim().is_empty() => {
+            Ok((path.trim().to_owned(), value.trim().to_owned()))
+        }
+        _ => Err("not of the form PATH=VALUE, like light.0.radius=0.5".to_owned()),
+    }
+}
+
+/// Stops of exposure.
+pub fn stops(text: &str) -> Result<f32, String> {
+    let stops: Option<f32> = text.trim().parse().ok();
+    stops
+        .filter(|stops| stops.abs() <= 100.0)
+        .ok_or_else(|| "not a number of stops from -100 to 100".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_have_two_sides() {
+        assert_eq!(size("1280x720"), Ok(UVec2::new(1280, 720)));
+        for wrong in [
+            "",
+            "1280",
+            "0x7",
+            "7x0",
+            "-1x7",
+            "7x7x7",
+            "axb",
+            "99999x1",
+            "65536x65536",
+        ] {
+            assert!(size(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn crops_have_four_numbers_and_a_pixel() {
+        let rect = Rect {
+            x: 1,
+            y: 2,
+            width: 3,
+            height: 4,
+        };
+        assert_eq!(crop("1, 2,3,4"), Ok(rect));
+        for wrong in ["1,2,3", "1,2,3,4,5", "1,2,0,4", "-1,2,3,4", "1.5,2,3,4"] {
+            assert!(crop(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn values_may_hold_equals_signs() {
+        let expected = ("a.b".to_owned(), "c = d".to_owned());
+        assert_eq!(assignment("a.b = c = d"), Ok(expected));
+        assert!(assignment("a.b").is_err() && assignment("=1").is_err());
+    }
+
+    #[test]
+    fn stops_are_finite() {
+        assert_eq!(stops("-1.5"), Ok(-1.5));
+        assert!(stops("nan").is_err() && stops("inf").is_err() && stops("x").is_err());
+    }
+}

@@ -1,0 +1,107 @@
+//! The layers of an EXR file, from a film.
+
+use halfshade::color::Rgb;
+use halfshade::film::Film;
+use halfshade::integrate::ViewKind;
+use halfshade::math::Vec3;
+use halfshade::output::exr::{Layer, Values};
+
+/// What stands beside the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LayerKind {
+    /// Diffuse reflectance or base colour of what is seen.
+    Albedo,
+    /// Its shading normal, in world axes.
+    Normal,
+    /// Its distance from the camera, metres.
+    Depth,
+    /// Variance of each pixel's mean.
+    Variance,
+    /// Number of each pixel's samples.
+    Samples,
+}
+
+impl LayerKind {
+    /// The view that the renderer has to make for it; `None` where the film has it anyway.
+    pub fn view(self) -> Option<ViewKind> {
+        match self {
+            Self::Albedo => Some(ViewKind::Albedo),
+            Self::Normal => Some(ViewKind::Normal),
+            Self::Depth => Some(ViewKind::Depth),
+            Self::Variance | Self::Samples => None,
+        }
+    }
+}
+
+/// The values of all layers of a film; layers of a file borrow them.
+pub struct LayerValues {
+    picture: Vec<Rgb>,
+    others: Vec<Owned>,
+}
+
+enum Owned {
+    Colors(&'static str, Vec<Rgb>),
+    Vectors(&'static str, Vec<Vec3>),
+    Numbers(&'static str, &'static str, Vec<f32>),
+}
+
+impl LayerValues {
+    /// The picture of `film` and `kinds`, the views of which `film` holds in the same order.
+    pub fn of_film(film: &Film, kinds: &[LayerKind]) -> Self {
+        let mut views = film.layers.iter();
+        let others = kinds.iter().filter_map(|kind| {
+            let mut view = || views.next().map(Vec::as_slice);
+            Some(match kind {
+                LayerKind::Albedo => {
+                    let colors = view()?.iter().map(|&c| Rgb::from(c));
+                    Owned::Colors("albedo", colors.collect())
+                }
+                LayerKind::Normal => {
+                    let normals = view()?.iter().map(|&n| Vec3::from(n));
+                    Owned::Vectors("normal", normals.collect())
+                }
+                LayerKind::Depth => {
+                    let depths = view()?.iter().map(|d| d[0]);
+                    Owned::Numbers("depth", "Z", depths.collect())
+                }
+                LayerKind::Variance => Owned::Colors("variance", film.variances()),
+                LayerKind::Samples => {
+                    let counts = film.pixels.iter().map(|p| p.count() as f32);
+                    Owned::Numbers("samples", "Y", counts.collect())
+                }
+            })
+        });
+        Self {
+            others: others.collect(),
+            picture: film.means(),
+        }
+    }
+
+    /// The picture itself.
+    pub fn picture(&self) -> &[Rgb] {
+        &self.picture
+    }
+
+    /// The layers of a file: the picture, without a name, and the others.
+    pub fn layers(&self) -> Vec<Layer<'_>> {
+        let picture = Layer {
+            name: "",
+            values: Values::Colors(&self.picture),
+        };
+        let others = self.others.iter().map(|layer| match layer {
+            Owned::Colors(name, values) => Layer {
+                name,
+                values: Values::Colors(values),
+            },
+            Owned::Vectors(name, values) => Layer {
+                name,
+                values: Values::Vectors(values),
+            },
+            Owned::Numbers(name, channel, values) => Layer {
+                name,
+                values: Values::Numbers { channel, values },
+            },
+        });
+        std::iter::once(picture).chain(others).collect()
+    }
+}

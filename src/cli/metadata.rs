@@ -1,0 +1,46 @@
+//! What an EXR file says about how it was made.
+
+use halfshade::film::Rect;
+use halfshade::scene::Settings;
+
+use super::names::{self, name_of};
+use super::options::RenderOptions;
+
+/// Keys and values: all that the picture depends on beside the files of the scene.
+pub fn metadata(
+    options: &RenderOptions,
+    settings: &Settings,
+    crop: Rect,
+) -> Vec<(&'static str, String)> {
+    let sampling = &settings.sampling;
+    let scene = &options.scene;
+    // The name alone: a path says more about the user than about the picture.
+    let name = scene.scene.file_name().unwrap_or_default();
+    let pattern = name_of(names::PATTERNS, sampling.pattern);
+    let target = name_of(names::TARGETS, sampling.target);
+    let integrator = name_of(names::INTEGRATORS, settings.integrator);
+    let mut metadata = vec![
+        ("scene", name.to_string_lossy().into_owned()),
+        ("size", format!("{}x{}", settings.size.x, settings.size.y)),
+        (
+            "crop",
+            format!("{},{},{},{}", crop.x, crop.y, crop.width, crop.height),
+        ),
+        ("integrator", integrator.to_owned()),
+        ("max_depth", settings.max_depth.to_string()),
+        ("samples", sampling.samples_per_pixel().to_string()),
+        ("pattern", pattern.to_owned()),
+        ("target", target.to_owned()),
+        ("seed", sampling.seed.to_string()),
+    ];
+    if let Some(samples) = settings.light_samples {
+        metadata.push(("light_samples", samples.to_string()));
+    }
+    if let Some(camera) = &options.picture.camera {
+        metadata.push(("camera", camera.clone()));
+    }
+    for (path, value) in &scene.set {
+        metadata.push(("set", format!("{path}={value}")));
+    }
+    metadata
+}

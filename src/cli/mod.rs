@@ -1,0 +1,51 @@
+//! The command line: one file a command.
+//!
+//! Results go to standard output, everything else to standard error. Exit status: 0 done, 1 the
+//! job failed, 2 the arguments are wrong.
+
+mod arguments;
+mod console;
+mod failure;
+mod info;
+mod interrupt;
+mod layers;
+mod metadata;
+mod names;
+mod options;
+mod process;
+mod progress;
+mod render;
+mod stats;
+mod targets;
+
+use clap::{Parser, Subcommand};
+
+pub use failure::Failure;
+
+/// Renders glTF and OBJ models with soft shadows, on the processor.
+#[derive(Debug, Parser)]
+#[command(
+    name = "halfshade",
+    version,
+    arg_required_else_help = true,
+    after_help = "Example:\n  halfshade render scenes/house.toml     makes house.png\n\n\
+        Exit status: 0 done, 1 the job failed, 2 the arguments are wrong."
+)]
+pub struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Render(Box<options::RenderOptions>),
+    Info(info::InfoOptions),
+}
+
+/// Does what the arguments say.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    match &arguments.command {
+        Command::Render(arguments) => render::run(arguments),
+        Command::Info(arguments) => info::run(arguments),
+    }
+}

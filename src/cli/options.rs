@@ -1,0 +1,179 @@
+//! The options of `render`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use halfshade::bvh::Builder;
+use halfshade::film::Rect;
+use halfshade::math::UVec2;
+use halfshade::sampling::{Pattern, Target};
+use halfshade::scene::{IntegratorKind, Settings, ToneMap};
+
+use super::arguments::{self, SampleId};
+use super::console::Console;
+use super::layers::LayerKind;
+use super::names::{self, one_of};
+
+const EXAMPLES: &str = "\
+Examples:
+  halfshade render scenes/house.toml
+      makes house.png
+  halfshade render bunny.obj --size 640x480 --samples 16 -o bunny.png -o bunny.exr
+      a model by itself gets a camera and lights, which are printed
+  halfshade render house.toml --set light.0.radius=0 --crop 100,50,64,64 -o part.exr
+
+Ctrl-C ends the render and saves what there is, with exit status 1.";
+
+/// Render a scene to PNG and EXR files
+#[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
+pub struct RenderOptions {
+    #[command(flatten)]
+    pub scene: SceneOptions,
+    #[command(flatten)]
+    pub picture: PictureOptions,
+    #[command(flatten)]
+    pub sampling: SamplingOptions,
+    #[command(flatten)]
+    pub work: WorkOptions,
+    #[command(flatten)]
+    pub output: OutputOptions,
+    #[command(flatten)]
+    pub console: Console,
+}
+
+/// What is read.
+#[derive(Args, Debug)]
+pub struct SceneOptions {
+    /// A scene file (.toml), or a model by itself (.gltf, .glb, .obj)
+    pub scene: PathBuf,
+    /// Change a key of the scene file, like light.0.radius=0; may be given again
+    #[arg(long, value_name = "PATH=VALUE", value_parser = arguments::assignment)]
+    pub set: Vec<(String, String)>,
+    /// Refuse files that require an extension that is not known
+    #[arg(long)]
+    pub strict: bool,
+}
+
+/// What is seen.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Picture")]
+pub struct PictureOptions {
+    /// Pixels across and down, like 1280x720
+    #[arg(long, value_name = "WxH", value_parser = arguments::size)]
+    pub size: Option<UVec2>,
+    /// Render only this part: upper left pixel, columns, rows
+    #[arg(long, value_name = "X,Y,W,H", value_parser = arguments::crop)]
+    pub crop: Option<Rect>,
+    /// Which of the scene's cameras
+    #[arg(long, value_name = "NAME")]
+    pub camera: Option<String>,
+    /// What is computed
+    #[arg(long, value_name = "KIND", value_parser = one_of(names::INTEGRATORS))]
+    pub integrator: Option<IntegratorKind>,
+    /// Scattering events of a path; 1 is direct light only
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub max_depth: Option<u32>,
+}
+
+/// How it is sampled.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Sampling")]
+pub struct SamplingOptions {
+    /// Camera samples per pixel
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 30))]
+    pub samples: Option<u32>,
+    /// Their layout
+    #[arg(long, value_parser = one_of(names::PATTERNS))]
+    pub pattern: Option<Pattern>,
+    /// What part of its pixel they land in
+    #[arg(long, value_parser = one_of(names::TARGETS))]
+    pub target: Option<Target>,
+    /// Shadow rays per light and shading point, in place of what each light says
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    pub light_samples: Option<u32>,
+    /// Other seeds give other random numbers
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+}
+
+/// How the work is done; the picture does not depend on it.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Work")]
+pub struct WorkOptions {
+    /// Threads [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub threads: Option<u16>,
+    /// How the tree over the triangles is built; none tests every triangle
+    #[arg(long, value_name = "BUILDER", default_value = "balanced", value_parser = one_of(names::BUILDERS))]
+    pub bvh: Builder,
+    /// Trace one sample of one pixel (column, row, index), print its rays and write no files
+    #[arg(long, value_name = "X,Y,I", value_parser = arguments::sample_id)]
+    pub replay: Option<SampleId>,
+}
+
+/// What is written.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Output")]
+pub struct OutputOptions {
+    /// A .png or .exr file; may be given again [default: the scene's name with .png, in this folder]
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Vec<PathBuf>,
+    /// Stops of exposure (PNG)
+    #[arg(long, value_name = "EV", allow_negative_numbers = true, value_parser = arguments::stops)]
+    pub exposure: Option<f32>,
+    /// What happens to what is too bright; none clips it (PNG)
+    #[arg(long, value_parser = one_of(names::TONE_MAPS))]
+    pub tone_map: Option<ToneMap>,
+    /// 16 bits a channel (PNG)
+    #[arg(long)]
+    pub png16: bool,
+    /// Layers beside the picture, with commas between them (EXR)
+    #[arg(long, value_delimiter = ',', value_parser = one_of(names::LAYERS))]
+    pub layers: Vec<LayerKind>,
+    /// Write what was done, how long it took and a digest of the pixels, as JSON
+    #[arg(long, value_name = "FILE.json")]
+    pub stats: Option<PathBuf>,
+}
+
+impl SceneOptions {
+    /// How the scene is imported.
+    pub fn import_options(&self) -> halfshade::import::SceneOptions {
+        halfshade::import::SceneOptions {
+            is_strict: self.strict,
+            overrides: self.set.clone(),
+            camera: None,
+        }
+    }
+}
+
+impl RenderOptions {
+    /// How the scene is imported.
+    pub fn import_options(&self) -> halfshade::import::SceneOptions {
+        let mut options = self.scene.import_options();
+        options.camera = self.picture.camera.clone();
+        // Not later, with the other options: a default camera frames the scene in this size.
+        if let Some(UVec2 { x, y }) = self.picture.size {
+            let size = ("film.size".to_owned(), format!("[{x}, {y}]"));
+            options.overrides.push(size);
+        }
+        options
+    }
+
+    /// Puts what the options say above what the scene says.
+    pub fn apply(&self, settings: &mut Settings) {
+        fn put<T: Copy>(option: Option<T>, setting: &mut T) {
+            if let Some(value) = option {
+                *setting = value;
+            }
+        }
+        put(self.picture.integrator, &mut settings.integrator);
+        put(self.picture.max_depth, &mut settings.max_depth);
+        put(self.sampling.samples, &mut settings.sampling.samples);
+        put(self.sampling.pattern, &mut settings.sampling.pattern);
+        put(self.sampling.target, &mut settings.sampling.target);
+        put(self.sampling.seed, &mut settings.sampling.seed);
+        let light_samples = self.sampling.light_samples;
+        settings.light_samples = light_samples.or(settings.light_samples);
+    }
+}

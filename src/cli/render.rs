@@ -1,0 +1,234 @@
+//! `halfshade render`: scene to picture.
+
+use std::sync::Arc;
+
+use halfshade::film::{Film, Rect};
+use halfshade::import::{Imported, import};
+use halfshade::output::exr::Window;
+use halfshade::prepare::{Prepared, prepare};
+use halfshade::render::{Job, render, replay};
+use halfshade::scene::Settings;
+
+use super::Failure;
+use super::arguments::SampleId;
+use super::console::{Console, print};
+use super::interrupt::Interrupt;
+use super::layers::LayerValues;
+use super::metadata::metadata;
+use super::options::RenderOptions;
+use super::progress::RenderProgress;
+use super::stats::{Done, Seconds, Stats, StepClock, StoppedBy};
+use super::targets::Targets;
+
+/// Does what the options say.
+pub fn run(options: &RenderOptions) -> Result<(), Failure> {
+    // All that can be wrong before the work begins.
+    let targets = match options.work.replay {
+        None => Some(Targets::of(options)?),
+        Some(_) => None,
+    };
+    let threads = options.work.threads.map_or(0, usize::from);
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .map_err(|error| Failure::job(format_args!("threads could not be started: {error}")))?;
+    pool.install(|| run_on_pool(options, targets.as_ref()))
+}
+
+fn run_on_pool(options: &RenderOptions, targets: Option<&Targets>) -> Result<(), Failure> {
+    let interrupt = Interrupt::listen();
+    let console = options.console;
+    let mut clock = StepClock::start();
+    let mut imported = import(&options.scene.scene, &options.import_options())?;
+    let import = clock.step();
+    announce(console, &imported);
+    options.apply(&mut imported.settings);
+    let settings = &imported.settings;
+    let crop = crop(options, settings)?;
+    let camera = imported.scene.cameras.first().ok_or_else(|| {
+        Failure::job(format_args!(
+            "{}: there is no camera, and nothing to point one at",
+            options.scene.scene.display()
+        ))
+    })?;
+
+    clock.step();
+    let Prepared { scene, warnings } = prepare(&imported.scene, options.work.bvh);
+    let prepare = clock.step();
+    console.warn_all(&warnings);
+    let job = Job {
+        camera: scene.camera(camera),
+        scene: &scene,
+        settings,
+        crop,
+        layers: options
+            .output
+            .layers
+            .iter()
+            .filter_map(|kind| kind.view())
+            .collect(),
+    };
+    let Some(targets) = targets else {
+        return replay_one(options, &job);
+    };
+
+    let film = watched(&job, &interrupt, console);
+    let render = clock.step();
+    say_rejected(console, &film);
+    let values = LayerValues::of_film(&film, &options.output.layers);
+    let window = Window {
+        picture: settings.size,
+        corner: halfshade::math::UVec2::new(crop.x, crop.y),
+        size: crop.size(),
+    };
+    targets.write(window, &values, &metadata(options, settings, crop))?;
+    let seconds = Seconds {
+        import,
+        prepare,
+        render,
+        output: clock.step(),
+        total: clock.total(),
+    };
+    let done = Done {
+        film: &film,
+        pixels: values.picture(),
+        triangles: imported.scene.triangle_count(),
+        seed: settings.sampling.seed,
+        seconds,
+        stopped_by: if film.is_complete {
+            StoppedBy::Samples
+        } else {
+            StoppedBy::Interrupt
+        },
+    };
+    finish(options, targets, &done)
+}
+
+/// Warnings, and what was added to a scene that lacked it.
+fn announce(console: Console, imported: &Imported) {
+    console.warn_all(&imported.warnings);
+    if let Some(defaults) = &imported.defaults {
+        let added = match (defaults.cameras, defaults.lights) {
+            (0, _) => "no lights: it gets these",
+            (_, 0) => "no camera: it gets this",
+            _ => "neither camera nor lights: it gets these",
+        };
+        console.say(format_args!(
+            "note: the scene has {added}, to be pasted into a scene file\n\n{}",
+            defaults.text
+        ));
+    }
+}
+
+/// The part of the film that is rendered.
+fn crop(options: &RenderOptions, settings: &Settings) -> Result<Rect, Failure> {
+    let size = settings.size;
+    let Some(crop) = options.picture.crop else {
+        return Ok(Rect::full(size));
+    };
+    let fits =
+        |start: u32, length: u32, all: u32| u64::from(start) + u64::from(length) <= u64::from(all);
+    if fits(crop.x, crop.width, size.x) && fits(crop.y, crop.height, size.y) {
+        Ok(crop)
+    } else {
+        Err(Failure::usage(
+            "render",
+            format_args!(
+                "--crop {},{},{},{} reaches outside the picture of {}x{} pixels",
+                crop.x, crop.y, crop.width, crop.height, size.x, size.y
+            ),
+        ))
+    }
+}
+
+fn replay_one(options: &RenderOptions, job: &Job) -> Result<(), Failure> {
+    let Some(SampleId { pixel, index }) = options.work.replay else {
+        return Ok(());
+    };
+    let size = job.settings.size;
+    let samples = job.settings.sampling.samples_per_pixel();
+    if pixel.x >= size.x || pixel.y >= size.y || index >= samples {
+        return Err(Failure::usage(
+            "render",
+            format_args!(
+                "--replay {},{},{index} is outside the picture of {}x{} pixels with {samples} \
+                 samples each, which are counted from 0",
+                pixel.x, pixel.y, size.x, size.y
+            ),
+        ));
+    }
+    print(replay(job, pixel, index).to_string().trim_end())
+}
+
+/// Renders with a progress bar, until it is done or the user has seen enough.
+fn watched(job: &Job, interrupt: &Arc<Interrupt>, console: Console) -> Film {
+    let settings = job.settings;
+    console.detail(format_args!(
+        "rendering {}x{} pixels, {} samples each, on {} threads",
+        job.crop.width,
+        job.crop.height,
+        settings.sampling.samples_per_pixel(),
+        rayon::current_num_threads()
+    ));
+    if settings.sampling.samples_per_pixel() != settings.sampling.samples {
+        console.say(format_args!(
+            "note: {} samples were asked for; the pattern's cells make it {}",
+            settings.sampling.samples,
+            settings.sampling.samples_per_pixel()
+        ));
+    }
+    let progress = RenderProgress::new(console.shows_progress());
+    interrupt.rendering_begins();
+    let film = render(job, &interrupt.is_requested, &|p| progress.observe(p));
+    progress.finish();
+    film
+}
+
+fn say_rejected(console: Console, film: &Film) {
+    if let Some(first) = film.first_rejected {
+        console.warn(format_args!(
+            "{} samples were not finite numbers and were left out; \
+             --replay {},{},{} shows the first",
+            film.rejected, first.pixel.x, first.pixel.y, first.index
+        ));
+    }
+}
+
+/// Writes the stats and says what was done.
+fn finish(options: &RenderOptions, targets: &Targets, done: &Done) -> Result<(), Failure> {
+    let console = options.console;
+    if let Some(path) = &options.output.stats {
+        Stats::of(done).write(path)?;
+    }
+    let rays = done.film.rays;
+    console.detail(format_args!(
+        "{} triangles; rays: {} camera, {} shadow, {} secondary",
+        done.triangles, rays.camera, rays.shadow, rays.secondary
+    ));
+    let files: Vec<String> = targets.paths().map(|p| p.display().to_string()).collect();
+    let size = done.film.size();
+    let s = done.seconds;
+    console.say(format_args!(
+        "{}: {}x{} pixels, {} samples each, {:.2} s (import {:.2}, prepare {:.2}, render {:.2}, output {:.2})",
+        files.join(", "),
+        size.x,
+        size.y,
+        samples_text(done.film),
+        s.total,
+        s.import,
+        s.prepare,
+        s.render,
+        s.output
+    ));
+    match done.stopped_by {
+        StoppedBy::Samples => Ok(()),
+        StoppedBy::Interrupt => Err(Failure::Interrupted),
+    }
+}
+
+fn samples_text(film: &Film) -> String {
+    match film.sample_counts() {
+        (min, _, max) if min == max => min.to_string(),
+        (min, _, max) => format!("{min} to {max}"),
+    }
+}

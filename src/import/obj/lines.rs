@@ -1,0 +1,171 @@
+//! Bytes to logical lines and words, without a copy where a line is not continued.
+
+use std::borrow::Cow;
+
+/// The statements of an OBJ or MTL file, with the numbers of the lines that they start on.
+///
+/// Lines end with LF, CRLF, or, in a file without any LF, CR. A backslash at the end of a line
+/// that is not a comment joins it with the next. A byte-order mark is skipped.
+pub struct Lines<'a> {
+    rest: &'a [u8],
+    separator: u8,
+    number: usize,
+}
+
+/// One logical line.
+pub struct Line<'a> {
+    /// Number of its first physical line, counted from 1.
+    pub number: usize,
+    /// What it says, with its comment.
+    pub text: Cow<'a, [u8]>,
+}
+
+impl<'a> Lines<'a> {
+    /// The lines of a whole file.
+    pub fn new(bytes: &'a [u8]) -> Self {
+        let rest = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+        let separator = if rest.contains(&b'\n') { b'\n' } else { b'\r' };
+        Self {
+            rest,
+            separator,
+            number: 0,
+        }
+    }
+
+    fn next_physical(&mut self) -> Option<&'a [u8]> {
+        if self.rest.is_empty() {
+            return None;
+        }
+        self.number += 1;
+        let end = self.rest.iter().position(|&b| b == self.separator);
+        let (line, rest) = match end {
+            Some(end) => (&self.rest[..end], &self.rest[end + 1..]),
+            None => (self.rest, &self.rest[self.rest.len()..]),
+        };
+        self.rest = rest;
+        Some(line.strip_suffix(b"\r").unwrap_or(line))
+    }
+
+    /// Joins `first`, which ends with a backslash, with the lines that continue it.
+    fn continued(&mut self, first: &'a [u8]) -> Vec<u8> {
+        let mut text = first.to_vec();
+        while text.last() == Some(&b'\\') {
+            text.pop();
+            text.push(b' ');
+            match self.next_physical() {
+                Some(next) => text.extend_from_slice(next),
+                None => break,
+            }
+        }
+        text
+    }
+}
+
+impl<'a> Iterator for Lines<'a> {
+    type Item = Line<'a>;
+
+    fn next(&mut self) -> Option<Line<'a>> {
+        let line = self.next_physical()?;
+        let number = self.number;
+        let is_comment = line.trim_ascii_start().starts_with(b"#");
+        let text = if line.last() == Some(&b'\\') && !is_comment {
+            Cow::Owned(self.continued(line))
+        } else {
+            Cow::Borrowed(line)
+        };
+        Some(Line { number, text })
+    }
+}
+
+/// The words of a text: what stands between blanks.
+#[derive(Clone)]
+pub struct Words<'a>(&'a [u8]);
+
+impl<'a> Words<'a> {
+    /// The words before the first `#`: for statements that hold numbers.
+    pub fn of_numbers(text: &'a [u8]) -> Self {
+        let end = text.iter().position(|&b| b == b'#');
+        Self(&text[..end.unwrap_or(text.len())])
+    }
+
+    /// The words before the first `#` that starts a word: for statements that hold names, in
+    /// which a `#` may stand.
+    pub fn of_names(text: &'a [u8]) -> Self {
+        let starts_comment =
+            |&i: &usize| text[i] == b'#' && (i == 0 || text[i - 1].is_ascii_whitespace());
+        let end = (0..text.len()).find(starts_comment);
+        Self(&text[..end.unwrap_or(text.len())])
+    }
+
+    /// Everything that is left, as one name that may have blanks inside.
+    pub fn rest(&self) -> &'a [u8] {
+        self.0.trim_ascii()
+    }
+}
+
+impl<'a> Iterator for Words<'a> {
+    type Item = &'a [u8];
+
+    fn next(&mut self) -> Option<&'a [u8]> {
+        let start = self.0.iter().position(|b| !b.is_ascii_whitespace())?;
+        let text = &self.0[start..];
+        let end = text.iter().position(u8::is_ascii_whitespace);
+        let (word, rest) = text.split_at(end.unwrap_or(text.len()));
+        self.0 = rest;
+        Some(word)
+    }
+}
+
+/// The number that `word` is; `None` where it is none.
+pub fn number(word: &[u8]) -> Option<f64> {
+    std::str::from_utf8(word).ok()?.parse().ok()
+}
+
+/// `word` for a message: readable and short, whatever its bytes are.
+pub fn shown(word: &[u8]) -> String {
+    const LONGEST: usize = 40;
+    let text = String::from_utf8_lossy(&word[..word.len().min(4 * LONGEST)]);
+    let mut shown: String = text.escape_debug().take(LONGEST).collect();
+    if text.escape_debug().nth(LONGEST).is_some() {
+        shown.push('…');
+    }
+    shown
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn logical(bytes: &[u8]) -> Vec<(usize, String)> {
+        Lines::new(bytes)
+            .map(|l| (l.number, String::from_utf8_lossy(&l.text).into_owned()))
+            .collect()
+    }
+
+    #[test]
+    fn lines_end_in_every_customary_way() {
+        let expected = vec![(1, "a".to_owned()), (2, String::new()), (3, "b".to_owned())];
+        for text in ["a\n\nb", "a\r\n\r\nb\r\n", "a\r\rb\r", "\u{feff}a\n\nb\n"] {
+            assert_eq!(logical(text.as_bytes()), expected, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn a_backslash_joins_lines_but_not_comments() {
+        assert_eq!(
+            logical(b"f 1 2 \\\r\n 3\\\n4\n# c:\\\nv 0 0 0\\"),
+            [
+                (1, "f 1 2   3 4".to_owned()),
+                (4, "# c:\\".to_owned()),
+                (5, "v 0 0 0 ".to_owned())
+            ]
+        );
+    }
+
+    #[test]
+    fn a_comment_may_stand_behind_a_statement() {
+        let words: Vec<_> = Words::of_numbers(b"\t1 2#x 3").collect();
+        assert_eq!(words, [b"1".as_slice(), b"2"]);
+        assert_eq!(Words::of_names(b" My Mat#1  # red ").rest(), b"My Mat#1");
+    }
+}

@@ -1,0 +1,150 @@
+//! The tree of a scene file to a [`Scene`] and its settings.
+
+use std::path::Path;
+
+use super::SceneOptions;
+use super::camera::{CameraSection, DEFAULT_VERTICAL_FOV, View};
+use super::defaults::{self, RigLight};
+use super::document::{Node, Source};
+use super::model::Models;
+use super::nearest::suggestion;
+use super::section::Section;
+use super::{light, material, settings};
+use crate::import::{ImportError, ImportOptions, Imported, Warnings};
+use crate::scene::{Scene, Settings};
+
+const SECTIONS: &[&str] = &[
+    "camera",
+    "film",
+    "sampling",
+    "integrator",
+    "background",
+    "model",
+    "material",
+    "light",
+];
+
+/// Makes a scene of what `root` says.
+pub fn build(
+    source: &Source,
+    root: &Node,
+    options: &SceneOptions,
+) -> Result<Imported, ImportError> {
+    let root = Section::new(source, root, "", SECTIONS)?;
+    let settings = settings::read(&root)?;
+    let camera = CameraSection::read(&root)?;
+    let mut warnings = Warnings::default();
+    let mut scene = scene(&root, options, &mut warnings)?;
+    let view = place_camera(&mut scene, camera, &settings, &source.path, options)?;
+    let lights = light_up(&mut scene, &root);
+    Ok(Imported {
+        defaults: defaults::report(view.as_ref(), &lights),
+        scene,
+        settings,
+        warnings,
+    })
+}
+
+/// Models, materials, lights and background; the cameras are those of the models.
+fn scene(
+    root: &Section,
+    options: &SceneOptions,
+    warnings: &mut Warnings,
+) -> Result<Scene, ImportError> {
+    let source = root.source;
+    let materials = material::read_all(source, root.list("material")?, warnings)?;
+    let mut scene = Scene {
+        background: settings::background(root)?,
+        materials: materials.clone(),
+        ..Scene::default()
+    };
+    let own_lights = root
+        .list("light")?
+        .iter()
+        .map(|node| light::read(source, node))
+        .collect::<Result<Vec<_>, _>>()?;
+    let import_options = ImportOptions {
+        is_strict: options.is_strict,
+    };
+    let mut models = Models::new(source, import_options, materials);
+    for node in root.list("model")? {
+        models.add(node, &mut scene, warnings)?;
+    }
+    if root.value("light").is_some() {
+        scene.lights = own_lights;
+    }
+    Ok(scene)
+}
+
+/// Makes the camera that was asked for the first of the scene; returns the default one, if it is that.
+fn place_camera(
+    scene: &mut Scene,
+    section: CameraSection,
+    settings: &Settings,
+    path: &Path,
+    options: &SceneOptions,
+) -> Result<Option<View>, ImportError> {
+    if let Some(name) = &options.camera {
+        choose(scene, name).map_err(|problem| ImportError::invalid(path, problem))?;
+        // A lens that belongs to a view of the scene file does not fit another camera.
+        if section.own.is_some() {
+            return Ok(None);
+        }
+    } else if let Some(own) = section.own {
+        scene.cameras.insert(0, own);
+        return Ok(None);
+    } else if let Some(name) = section.name {
+        choose(scene, name.string()?).map_err(|problem| name.invalid(problem))?;
+    }
+    if let Some(first) = scene.cameras.first_mut() {
+        section.adjust(&mut first.item)?;
+        return Ok(None);
+    }
+    let size = settings.size.as_dvec2();
+    let fov = section.vertical_fov.unwrap_or(DEFAULT_VERTICAL_FOV);
+    let view = View {
+        lens_radius: section.lens_radius.unwrap_or(0.0),
+        focus_distance: section.focus_distance,
+        ..defaults::view(scene.bounds(), size.x / size.y, fov)
+    };
+    let camera = view.camera();
+    let view = camera.is_some().then_some(view);
+    scene.cameras.extend(camera);
+    Ok(view)
+}
+
+/// Makes the camera called `name` the first.
+fn choose(scene: &mut Scene, name: &str) -> Result<(), String> {
+    let index = scene.cameras.iter().position(|camera| camera.name == name);
+    let index = index.ok_or_else(|| {
+        let names: Vec<_> = scene
+            .cameras
+            .iter()
+            .map(|camera| camera.name.as_str())
+            .filter(|name| !name.is_empty())
+            .collect();
+        let list = match names.as_slice() {
+            [] => "no camera of the scene has a name".to_owned(),
+            names => format!("there are: {}", names.join(", ")),
+        };
+        match suggestion(name, &names) {
+            guess if guess.starts_with("did") => {
+                format!("no camera is named \"{name}\"; {guess} {list}")
+            }
+            _ => format!("no camera is named \"{name}\"; {list}"),
+        }
+    })?;
+    scene.cameras[..=index].rotate_right(1);
+    Ok(())
+}
+
+/// Gives default lights to a scene that has none, unless it says so itself (`light = []`).
+fn light_up(scene: &mut Scene, root: &Section) -> Vec<RigLight> {
+    let is_dark = scene.lights.is_empty() && root.value("light").is_none();
+    let Some(camera) = scene.cameras.first().filter(|_| is_dark) else {
+        return Vec::new();
+    };
+    let rig = defaults::lights(&camera.item);
+    scene.lights.extend(rig.iter().filter_map(RigLight::light));
+    Vec::from(rig)
+}

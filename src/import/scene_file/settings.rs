@@ -1,0 +1,120 @@
+//! `[film]`, `[sampling]`, `[integrator]` and `[background]`.
+
+use super::section::Section;
+use super::value::{NON_NEGATIVE, Value};
+use crate::color::Rgb;
+use crate::import::ImportError;
+use crate::math::UVec2;
+use crate::sampling::{Pattern, SamplingConfig, Target};
+use crate::scene::{Background, IntegratorKind, Settings};
+
+/// Most pixels along one side of a picture.
+const MAX_SIDE: u32 = 65_536;
+/// Most pixels of a picture.
+const MAX_PIXELS: u64 = 1 << 28;
+/// Most camera samples per pixel.
+const MAX_SAMPLES: u32 = 1 << 30;
+/// Most scattering events of a path: integrators recurse.
+const MAX_DEPTH: u32 = 1024;
+
+/// The patterns by name.
+pub const PATTERNS: &[(&str, Pattern)] = &[
+    ("grid", Pattern::Grid),
+    ("jittered", Pattern::Jittered),
+    ("random", Pattern::Random),
+    ("sobol", Pattern::Sobol),
+];
+
+/// The targets by name.
+pub const TARGETS: &[(&str, Target)] =
+    &[("rectangle", Target::Rectangle), ("circle", Target::Circle)];
+
+/// The integrators by name.
+pub const INTEGRATORS: &[(&str, IntegratorKind)] = &[
+    ("whitted", IntegratorKind::Whitted),
+    ("normal", IntegratorKind::Normal),
+    ("depth", IntegratorKind::Depth),
+    ("albedo", IntegratorKind::Albedo),
+];
+
+/// Reads `[film]`, `[sampling]` and `[integrator]` of `root`; defaults where they are left out.
+pub fn read(root: &Section) -> Result<Settings, ImportError> {
+    let mut settings = Settings::default();
+    if let Some(value) = root.value("film") {
+        let section = Section::new(root.source, value.node, "[film]", &["size"])?;
+        settings.size = section.get("size", size)?.unwrap_or(settings.size);
+    }
+    if let Some(value) = root.value("sampling") {
+        settings.sampling = sampling(value)?;
+    }
+    if let Some(value) = root.value("integrator") {
+        let keys = &["kind", "max_depth"];
+        let section = Section::new(root.source, value.node, "[integrator]", keys)?;
+        settings.integrator = section
+            .get("kind", integrator)?
+            .unwrap_or(settings.integrator);
+        settings.max_depth = section
+            .get("max_depth", |v| v.integer_u32(1, MAX_DEPTH))?
+            .unwrap_or(settings.max_depth);
+    }
+    Ok(settings)
+}
+
+/// Reads `[background]` of `root`; black where it is left out.
+pub fn background(root: &Section) -> Result<Background, ImportError> {
+    let Some(value) = root.value("background") else {
+        return Ok(Background::default());
+    };
+    let keys = &["radiance", "ambient", "environment", "rotate"];
+    let section = Section::new(root.source, value.node, "[background]", keys)?;
+    for key in ["environment", "rotate"] {
+        if let Some(value) = section.value(key) {
+            let what = format!("\"{key}\" (an environment map) in this version");
+            return Err(root.source.unsupported(&value.node.place, what));
+        }
+    }
+    let color = |key| section.get(key, |v| v.color(NON_NEGATIVE));
+    Ok(Background {
+        radiance: color("radiance")?.unwrap_or(Rgb::BLACK),
+        ambient: color("ambient")?.unwrap_or(Rgb::BLACK),
+    })
+}
+
+fn size(value: Value) -> Result<UVec2, ImportError> {
+    let size: [u32; 2] = value.array("[width, height]", |v| v.integer_u32(1, MAX_SIDE))?;
+    let pixels = u64::from(size[0]) * u64::from(size[1]);
+    if pixels > MAX_PIXELS {
+        return Err(value.invalid(format!(
+            "size must be at most {MAX_PIXELS} pixels in all, not {pixels}"
+        )));
+    }
+    Ok(UVec2::from_array(size))
+}
+
+fn sampling(value: Value) -> Result<SamplingConfig, ImportError> {
+    let keys = &["samples", "pattern", "target", "seed"];
+    let section = Section::new(value.source, value.node, "[sampling]", keys)?;
+    let default = SamplingConfig::default();
+    Ok(SamplingConfig {
+        samples: section
+            .get("samples", |v| v.integer_u32(1, MAX_SAMPLES))?
+            .unwrap_or(default.samples),
+        pattern: section
+            .get("pattern", |v| v.one_of(PATTERNS))?
+            .unwrap_or(default.pattern),
+        target: section
+            .get("target", |v| v.one_of(TARGETS))?
+            .unwrap_or(default.target),
+        seed: section
+            .get("seed", |v| v.integer(0, u64::MAX))?
+            .unwrap_or(default.seed),
+    })
+}
+
+fn integrator(value: Value) -> Result<IntegratorKind, ImportError> {
+    if value.string()? == "path" {
+        let what = "the integrator \"path\" in this version";
+        return Err(value.source.unsupported(&value.node.place, what));
+    }
+    value.one_of(INTEGRATORS)
+}

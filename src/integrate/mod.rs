@@ -1,0 +1,48 @@
+//! Techniques: from a ray to the radiance that comes back along it.
+
+mod log;
+mod views;
+mod visibility;
+mod whitted;
+
+pub use log::{RayKind, RayLog, RayRecord};
+pub use views::{View, ViewKind};
+pub use whitted::Whitted;
+
+use crate::color::Rgb;
+use crate::math::Ray;
+use crate::prepare::PreparedScene;
+use crate::sampling::{Pattern, Sampler};
+use crate::scene::{IntegratorKind, Settings};
+
+/// A technique: what light, or what else, comes back along a ray.
+pub trait Integrator: Sync {
+    /// Radiance along `ray`, W/(m² sr), with the random numbers of `sampler`.
+    ///
+    /// The rays that are traced for it are counted, and on request recorded, in `log`.
+    fn radiance(&self, ray: &Ray, sampler: &Sampler, log: &mut RayLog) -> Rgb;
+}
+
+/// The technique that `settings` ask for.
+pub fn integrator<'a>(
+    scene: &'a PreparedScene<'a>,
+    settings: &Settings,
+) -> Box<dyn Integrator + 'a> {
+    let view = |kind| Box::new(View { scene, kind });
+    match settings.integrator {
+        IntegratorKind::Whitted => Box::new(Whitted::new(scene, settings)),
+        IntegratorKind::Normal => view(ViewKind::Normal),
+        IntegratorKind::Depth => view(ViewKind::Depth),
+        IntegratorKind::Albedo => view(ViewKind::Albedo),
+    }
+}
+
+/// Shadow rays per shading point and light: what `asked` or the light says, rounded as `pattern`
+/// wants it, and one where all would be the same.
+fn light_samples(light: &crate::light::Light, asked: Option<u32>, pattern: Pattern) -> u32 {
+    if light.is_delta() {
+        1
+    } else {
+        pattern.cells(asked.unwrap_or_else(|| light.samples()))
+    }
+}

@@ -1,0 +1,257 @@
+//! Local shading, shadows, mirrors and glass
+//! (Whitted 1980, "An Improved Illumination Model for Shaded Display").
+
+use crate::bvh::Hit;
+use crate::color::Rgb;
+use crate::interaction::Interaction;
+use crate::light::{Light, LightSample, ShadowEnd};
+use crate::material::{Bsdf, fresnel_dielectric, reflect, refract};
+use crate::math::Ray;
+use crate::prepare::{PreparedScene, Surface};
+use crate::sampling::Sampler;
+use crate::scene::Settings;
+
+use super::visibility::{relative_index, transmittance};
+use super::{Integrator, RayKind, RayLog, RayRecord, light_samples};
+
+/// Rays that count for less than this in every channel are not followed: what is cut off is at
+/// most this share of what they would have brought back.
+const LEAST_WEIGHT: f32 = 1e-5;
+
+/// Direct light with shadows on matte and glossy surfaces; mirrors and glass are followed.
+#[derive(Debug)]
+pub struct Whitted<'a> {
+    scene: &'a PreparedScene<'a>,
+    max_depth: u32,
+    /// Per light: shadow rays per shading point.
+    samples: Vec<u32>,
+    /// Lights that rays can meet.
+    visible: Vec<&'a Light>,
+}
+
+/// A ray that waits to be followed.
+struct Pending {
+    kind: RayKind,
+    ray: Ray,
+    weight: Rgb,
+    /// Scattering events before it.
+    depth: u32,
+    /// Which vertex of the tree of rays it leads to: 1 is what the camera sees, the mirror image
+    /// seen at vertex n is 2n, what is behind it 2n + 1.
+    vertex: u32,
+}
+
+impl<'a> Whitted<'a> {
+    /// The technique with the depth and shadow rays of `settings`.
+    pub fn new(scene: &'a PreparedScene<'a>, settings: &Settings) -> Self {
+        let pattern = settings.sampling.pattern;
+        let samples = |light| light_samples(light, settings.light_samples, pattern);
+        let has_surface = |light: &&Light| match light {
+            Light::Disk(light) => light.is_visible,
+            Light::Rectangle(light) => light.is_visible,
+            Light::Sphere(light) => light.is_visible,
+            Light::Point(_) | Light::Spot(_) | Light::Distant(_) => false,
+        };
+        Self {
+            scene,
+            max_depth: settings.max_depth,
+            samples: scene.lights.iter().map(samples).collect(),
+            visible: scene.lights.iter().filter(has_surface).collect(),
+        }
+    }
+
+    /// What comes back along one ray, surfaces that it crosses without a bend included; rays that
+    /// leave in other directions are added to `pending`.
+    fn follow(
+        &self,
+        from: &Pending,
+        sampler: &Sampler,
+        log: &mut RayLog,
+        pending: &mut Vec<Pending>,
+    ) -> Rgb {
+        let mut total = Rgb::BLACK;
+        let mut weight = from.weight;
+        let mut last: Option<Hit> = None;
+        loop {
+            let hit = self.scene.closest_hit(&from.ray, last.as_ref());
+            if last.is_none() {
+                log.add(from.kind, || RayRecord {
+                    kind: from.kind,
+                    depth: from.depth,
+                    ray: from.ray,
+                    t: hit.map(|h| h.t),
+                    weight,
+                });
+            }
+            let passed = last.map_or(0.0, |h| h.t);
+            if let Some(radiance) = self.light_between(&from.ray, passed, hit.as_ref()) {
+                return total + weight * radiance;
+            }
+            let Some(hit) = hit else {
+                return total + weight * self.scene.background.radiance;
+            };
+            let surface = self.scene.surface(&from.ray, &hit);
+            let opacity = surface.material.opacity(&surface.lookup);
+            let mut straight = Rgb::splat(1.0 - opacity);
+            if opacity > 0.0 {
+                let here = Pending {
+                    weight: weight * opacity,
+                    ..*from
+                };
+                let bsdf = surface.material.bsdf(&surface.lookup);
+                total += here.weight * self.shade(&surface, &bsdf, &here, sampler, log);
+                straight += opacity * self.scatter(&surface, &bsdf, &here, pending);
+            }
+            weight *= straight;
+            if weight.max_channel() < LEAST_WEIGHT {
+                return total;
+            }
+            last = Some(hit);
+        }
+    }
+
+    /// Radiance of the nearest light whose surface `ray` meets beyond `passed` and before `hit`.
+    fn light_between(&self, ray: &Ray, passed: f32, hit: Option<&Hit>) -> Option<Rgb> {
+        let end = hit.map_or(ray.t_max, |h| h.t);
+        self.visible
+            .iter()
+            .filter_map(|light| light.emitted(ray))
+            .filter(|(t, _)| *t > passed && *t < end)
+            .min_by(|(a, _), (b, _)| a.total_cmp(b))
+            .map(|(_, radiance)| radiance)
+    }
+
+    /// Emitted, ambient and direct light that leaves `surface` to the viewer.
+    fn shade(
+        &self,
+        surface: &Surface,
+        bsdf: &Bsdf,
+        from: &Pending,
+        sampler: &Sampler,
+        log: &mut RayLog,
+    ) -> Rgb {
+        let at = &surface.interaction;
+        let cos_o = at.shading_normal.dot(*at.wo);
+        let ambient = self.scene.background.ambient * surface.material.occlusion(&surface.lookup);
+        let mut total = surface.material.emitted(&surface.lookup) + ambient * bsdf.ambient(cos_o);
+        if from.depth >= self.max_depth {
+            return total;
+        }
+        for (number, light) in self.scene.lights.iter().enumerate() {
+            let number = number as u32;
+            let count = self.samples[number as usize];
+            let mut sum = Rgb::BLACK;
+            for j in 0..count {
+                let u = sampler.light(from.vertex, number, j, count);
+                if let Some(sample) = light.sample(at.point, u) {
+                    sum += self.direct(at, bsdf, &sample, from, number, log);
+                }
+            }
+            total += sum / count as f32;
+        }
+        total
+    }
+
+    /// What one sample of a light adds.
+    fn direct(
+        &self,
+        at: &Interaction,
+        bsdf: &Bsdf,
+        sample: &LightSample,
+        from: &Pending,
+        light: u32,
+        log: &mut RayLog,
+    ) -> Rgb {
+        let cos_i = at.shading_normal.dot(*sample.wi);
+        if cos_i <= 0.0 || at.geometric_normal.dot(*sample.wi) <= 0.0 {
+            return Rgb::BLACK;
+        }
+        let unshadowed = sample.weight * bsdf.eval(at.shading_normal, at.wo, sample.wi) * cos_i;
+        if unshadowed.is_black() {
+            return Rgb::BLACK;
+        }
+        let ray = match sample.shadow {
+            ShadowEnd::Point(target) => at.spawn_ray_to(target),
+            ShadowEnd::Direction(direction) => at.spawn_ray(*direction),
+        };
+        let value = unshadowed * transmittance(self.scene, &ray);
+        let kind = RayKind::Shadow(light);
+        log.add(kind, || RayRecord {
+            kind,
+            depth: from.depth,
+            ray,
+            t: None,
+            weight: value,
+        });
+        value
+    }
+
+    /// Sends rays on from a mirror or from glass; returns the share that goes straight on.
+    fn scatter(
+        &self,
+        surface: &Surface,
+        bsdf: &Bsdf,
+        from: &Pending,
+        pending: &mut Vec<Pending>,
+    ) -> Rgb {
+        let at = &surface.interaction;
+        let specular = &bsdf.specular;
+        let cos_o = at.shading_normal.dot(*at.wo).min(1.0);
+        let mut mirrored = specular.mirrored(cos_o);
+        let mut through = specular.transmit;
+        let eta = relative_index(surface);
+        if !through.is_black() {
+            let reflected = fresnel_dielectric(cos_o, eta);
+            mirrored += through * reflected;
+            through = through * (1.0 - reflected);
+        }
+        if from.depth + 1 < self.max_depth {
+            let mut send = |kind, direction, weight: Rgb, vertex: u32| {
+                let weight = from.weight * weight;
+                if weight.max_channel() >= LEAST_WEIGHT {
+                    pending.push(Pending {
+                        kind,
+                        ray: at.spawn_ray(direction),
+                        weight,
+                        depth: from.depth + 1,
+                        vertex,
+                    });
+                }
+            };
+            let mirror = reflect(*at.wo, *at.shading_normal);
+            if at.geometric_normal.dot(mirror) > 0.0 {
+                let vertex = from.vertex.wrapping_mul(2);
+                send(RayKind::Reflected, mirror, mirrored, vertex);
+            }
+            if !specular.is_straight()
+                && let Some(beyond) = refract(*at.wo, *at.shading_normal, eta)
+            {
+                let vertex = from.vertex.wrapping_mul(2).wrapping_add(1);
+                send(RayKind::Refracted, beyond, through, vertex);
+            }
+        }
+        if specular.is_straight() {
+            through
+        } else {
+            Rgb::BLACK
+        }
+    }
+}
+
+impl Integrator for Whitted<'_> {
+    fn radiance(&self, ray: &Ray, sampler: &Sampler, log: &mut RayLog) -> Rgb {
+        let mut pending = Vec::new();
+        let camera = Pending {
+            kind: RayKind::Camera,
+            ray: *ray,
+            weight: Rgb::WHITE,
+            depth: 0,
+            vertex: 1,
+        };
+        let mut total = self.follow(&camera, sampler, log, &mut pending);
+        while let Some(next) = pending.pop() {
+            total += self.follow(&next, sampler, log, &mut pending);
+        }
+        total
+    }
+}

@@ -1,0 +1,87 @@
+//! A rectangle as seen from a point.
+
+use crate::math::{DVec2, DVec3, Vec2};
+
+/// The directions from the origin in which a rectangle is seen
+/// (Ureña et al. 2013, "An Area-Preserving Parametrization for Spherical Rectangles").
+///
+/// Solid angles are sums of arctangents, which lose nothing when the rectangle is near or seen
+/// edge-on, where the paper's arccosines of nearly 1 do.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SphericalRectangle {
+    /// Corners, with the foot of the perpendicular from the origin at (0, 0).
+    min: DVec2,
+    max: DVec2,
+    /// Distance of the rectangle's plane.
+    height: f64,
+    solid_angle: f64,
+    /// Solid angle from x = 0 to `min.x`; negative for negative `min.x`.
+    start: f64,
+}
+
+impl SphericalRectangle {
+    /// Cosine of the angle between edges up to which they count as perpendicular.
+    const SKEW: f64 = 1e-6;
+    /// Below it (a square of 0.0001 radians across), differences of solid angles are noise.
+    const SMALLEST_SOLID_ANGLE: f64 = 1e-8;
+
+    /// `None` where the edges are not perpendicular or the solid angle is tiny. `height` is the distance
+    /// of the plane, above 0.
+    pub fn new(center: DVec3, half_u: DVec3, half_v: DVec3, height: f64) -> Option<Self> {
+        let half = DVec2::new(half_u.length(), half_v.length());
+        let (x, y) = (half_u / half.x, half_v / half.y);
+        if x.dot(y).abs() > Self::SKEW {
+            return None;
+        }
+        let middle = DVec2::new(center.dot(x), center.dot(y));
+        let (min, max) = (middle - half, middle + half);
+        let start = strip(min.x, min.y, max.y, height);
+        let solid_angle = strip(max.x, min.y, max.y, height) - start;
+        (solid_angle > Self::SMALLEST_SOLID_ANGLE).then_some(Self {
+            min,
+            max,
+            height,
+            solid_angle,
+            start,
+        })
+    }
+
+    /// In steradians.
+    pub fn solid_angle(&self) -> f64 {
+        self.solid_angle
+    }
+
+    /// A point, uniform by solid angle: its place along both edges, in `[-1, 1]²`.
+    pub fn sample(&self, u: Vec2) -> DVec2 {
+        let u = u.as_dvec2();
+        let x = self.x_of(self.start + u.x * self.solid_angle);
+        // With x fixed, solid angle is in proportion to the sine of the elevation.
+        let distance = x.hypot(self.height);
+        let sin = |y: f64| y / y.hypot(distance);
+        let elevation = sin(self.min.y) + u.y * (sin(self.max.y) - sin(self.min.y));
+        let y = elevation * distance / ((1.0 - elevation) * (1.0 + elevation)).max(0.0).sqrt();
+        let place = DVec2::new(x, y).clamp(self.min, self.max);
+        ((place - self.min) / (self.max - self.min) * 2.0 - DVec2::ONE)
+            .clamp(DVec2::NEG_ONE, DVec2::ONE)
+    }
+
+    /// The x up to which the solid angle from x = 0 is `angle`: the inverse of [`strip`]
+    /// (the paper's equation for cos θᵤ).
+    fn x_of(&self, angle: f64) -> f64 {
+        let to_low = self.min.y.hypot(self.height);
+        let (sin_low, cos_low) = (self.min.y / to_low, self.height / to_low);
+        let sin_high = self.max.y / self.max.y.hypot(self.height);
+        let (sin, cos) = angle.sin_cos();
+        let f = (sin_high - sin_low * cos) / sin;
+        // cos θ / sin θ with cos θ = ±1/√(f² + sin_low²).
+        let cotangent_squared = 1.0 / ((f - cos_low) * (f + cos_low)).max(0.0);
+        self.height * cotangent_squared.sqrt().copysign(f)
+    }
+}
+
+/// Solid angle of the rectangle from (0, y_low) to (x, y_high) at distance `height`; negative
+/// for negative x.
+fn strip(x: f64, y_low: f64, y_high: f64, height: f64) -> f64 {
+    let quadrant = |y: f64| (x * y).atan2(height * DVec3::new(x, y, height).length());
+    quadrant(y_high) - quadrant(y_low)
+}

@@ -1,0 +1,150 @@
+//! Scattering at one point of a surface.
+
+use std::f32::consts::PI;
+
+use crate::color::Rgb;
+use crate::math::{UnitVec3, Vec3};
+
+use super::fresnel::{reflect, schlick_weight};
+
+/// Scattering at one point of a surface, of either kind of material.
+///
+/// Directions point away from the surface and are on the side of `normal`; the cosine is never
+/// included.
+#[derive(Clone, Copy, Debug)]
+pub struct Bsdf {
+    /// Reflectance of the Lambertian lobe.
+    pub diffuse: Rgb,
+    /// The lobe around the mirror direction.
+    pub glossy: Glossy,
+    /// Perfect mirror and what is let through.
+    pub specular: Specular,
+}
+
+/// A lobe around the mirror direction.
+#[derive(Clone, Copy, Debug)]
+pub enum Glossy {
+    /// None.
+    None,
+    /// Phong's cosine lobe, normalised by (n+2)/(2π) so that it never makes energy
+    /// (Lafortune and Willems 1994, "Using the Modified Phong Reflectance Model for Physically Based Rendering").
+    Phong {
+        /// Its reflectance.
+        reflectance: Rgb,
+        /// Its exponent n, at least 0.
+        exponent: f32,
+    },
+    /// GGX microfacets
+    /// (Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces").
+    Ggx {
+        /// Reflectance at normal incidence.
+        f0: Rgb,
+        /// Reflectance at grazing incidence.
+        f90: f32,
+        /// Roughness α, above 0.
+        alpha: f32,
+    },
+}
+
+/// Perfect mirror and what is let through.
+#[derive(Clone, Copy, Debug)]
+pub struct Specular {
+    /// Share that is mirrored at every angle.
+    pub reflect: Rgb,
+    /// Share that is added to `reflect` at grazing incidence, by Schlick's weight.
+    pub reflect_grazing: Rgb,
+    /// Share that enters the border, split into mirrored and refracted by Fresnel's equations.
+    pub transmit: Rgb,
+    /// Index of the inside over the index of the outside.
+    pub index_of_refraction: f32,
+    /// Whether the surface is a thin wall, which light crosses without a bend.
+    pub is_thin: bool,
+}
+
+impl Specular {
+    /// Neither mirror nor glass.
+    pub const NONE: Self = Self {
+        reflect: Rgb::BLACK,
+        reflect_grazing: Rgb::BLACK,
+        transmit: Rgb::BLACK,
+        index_of_refraction: 1.0,
+        is_thin: true,
+    };
+
+    /// The mirrored share at `cos_o`, without what Fresnel's equations take from `transmit`.
+    pub fn mirrored(&self, cos_o: f32) -> Rgb {
+        self.reflect + self.reflect_grazing * schlick_weight(cos_o)
+    }
+
+    /// Whether light that is let through keeps its direction.
+    pub fn is_straight(&self) -> bool {
+        self.is_thin || self.index_of_refraction == 1.0
+    }
+}
+
+/// A surface that gives back no light.
+pub const BLACK: Bsdf = Bsdf {
+    diffuse: Rgb::BLACK,
+    glossy: Glossy::None,
+    specular: Specular::NONE,
+};
+
+impl Bsdf {
+    /// Value for light that comes from `wi` and leaves to `wo`, 1/sr.
+    pub fn eval(&self, normal: UnitVec3, wo: UnitVec3, wi: UnitVec3) -> Rgb {
+        let diffuse = self.diffuse * (1.0 / PI);
+        match self.glossy {
+            Glossy::None => diffuse,
+            Glossy::Phong {
+                reflectance,
+                exponent,
+            } => diffuse + reflectance * phong_lobe(*normal, *wo, *wi, exponent),
+            Glossy::Ggx { f0, f90, alpha } => diffuse + ggx(*normal, *wo, *wi, f0, f90, alpha),
+        }
+    }
+
+    /// Share of uniform ambient light that is scattered to `wo`, mirrors and glass left out.
+    pub fn ambient(&self, cos_o: f32) -> Rgb {
+        let glossy = match self.glossy {
+            Glossy::None => Rgb::BLACK,
+            Glossy::Phong { reflectance, .. } => reflectance,
+            Glossy::Ggx { f0, f90, .. } => schlick(f0, f90, cos_o),
+        };
+        self.diffuse + glossy
+    }
+}
+
+fn schlick(f0: Rgb, f90: f32, cos: f32) -> Rgb {
+    f0.lerp(Rgb::splat(f90), schlick_weight(cos))
+}
+
+fn phong_lobe(normal: Vec3, wo: Vec3, wi: Vec3, exponent: f32) -> f32 {
+    // 1 - cos, without the cancellation that would decide the value at large exponents.
+    let deviation = 0.5 * (reflect(wi, normal) - wo).length_squared();
+    if deviation >= 1.0 {
+        return 0.0;
+    }
+    (exponent + 2.0) / (2.0 * PI) * (exponent * (-deviation).ln_1p()).exp()
+}
+
+fn ggx(normal: Vec3, wo: Vec3, wi: Vec3, f0: Rgb, f90: f32, alpha: f32) -> Rgb {
+    let Some(half) = UnitVec3::normalize(wo + wi) else {
+        return Rgb::BLACK;
+    };
+    let (cos_o, cos_i) = (normal.dot(wo), normal.dot(wi));
+    if cos_o <= 0.0 || cos_i <= 0.0 {
+        return Rgb::BLACK;
+    }
+    let a2 = alpha * alpha;
+    let cos_h = normal.dot(*half);
+    // sin² from the cross product: 1 - cos² has no digits left near the peak.
+    let sin2_h = normal.cross(*half).length_squared();
+    let spread = sin2_h + a2 * cos_h * cos_h;
+    let distribution = a2 / (PI * spread * spread);
+    // Height-correlated masking and shadowing over 4 cos_o cos_i
+    // (Heitz 2014, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs").
+    let lambda_o = cos_i * (a2 + (1.0 - a2) * cos_o * cos_o).sqrt();
+    let lambda_i = cos_o * (a2 + (1.0 - a2) * cos_i * cos_i).sqrt();
+    let visibility = 0.5 / (lambda_o + lambda_i);
+    schlick(f0, f90, wo.dot(*half)) * (distribution * visibility)
+}

@@ -1,0 +1,210 @@
+//! The triangles that rays meet: flattened where that is cheap, instances where it is not.
+
+use rayon::prelude::*;
+
+use crate::bvh::{Builder, Bvh, Tracer};
+use crate::math::{DAffine3, Vec3};
+use crate::scene::{Instance, MeshId, Scene};
+
+use super::placement::Placement;
+
+/// Triangles that flattening may add to a scene, beyond one copy of each mesh, before shared
+/// meshes are kept as instances.
+const FLATTEN_BUDGET: u64 = 1 << 21;
+
+/// Triangles of one tree, in the coordinates that they are traced in.
+#[derive(Debug, Default)]
+pub struct TreeGeometry {
+    /// Vertices.
+    pub positions: Vec<Vec3>,
+    /// Triangles.
+    pub indices: Vec<[u32; 3]>,
+}
+
+/// What the tracer's instances are.
+#[derive(Debug)]
+pub enum Placing {
+    /// A tree in prepared coordinates, made of many instances of the scene. Each part says which,
+    /// and at which triangle of the tree it begins.
+    Flattened(Vec<Part>),
+    /// One instance of the scene.
+    Instanced {
+        /// Which instance of the scene.
+        instance: u32,
+        /// From the mesh's coordinates to prepared ones.
+        to_prepared: DAffine3,
+    },
+}
+
+/// A run of triangles in a flattened tree.
+#[derive(Clone, Copy, Debug)]
+pub struct Part {
+    /// Its first triangle in the tree.
+    pub first_triangle: u32,
+    /// Which instance of the scene it is.
+    pub instance: u32,
+}
+
+/// All triangles of a scene, ready to be traced.
+#[derive(Debug)]
+pub struct Geometry {
+    /// Finds hits.
+    pub tracer: Tracer,
+    /// Per tree: its triangles.
+    pub trees: Vec<TreeGeometry>,
+    /// Per instance of the tracer: its tree, and what it is.
+    pub placings: Vec<(u32, Placing)>,
+    /// Triangles that were dropped since a vertex is not a finite number.
+    pub non_finite_triangles: u64,
+}
+
+impl Geometry {
+    /// Places and builds everything that `scene` holds.
+    pub fn build(scene: &Scene, placement: &Placement, builder: Builder) -> Self {
+        let instanced = instanced_meshes(scene);
+        let (shared, single): (Vec<_>, Vec<_>) = scene
+            .instances
+            .iter()
+            .enumerate()
+            .map(|(i, instance)| (i as u32, instance))
+            .partition(|(_, instance)| instanced.binary_search(&instance.mesh).is_ok());
+
+        let mut trees = Vec::new();
+        let mut placings = Vec::new();
+        if !single.is_empty() || shared.is_empty() {
+            let (tree, parts) = flatten(scene, &single, placement);
+            trees.push(tree);
+            placings.push((0, Placing::Flattened(parts)));
+        }
+        let first_mesh_tree = trees.len() as u32;
+        trees.extend(instanced.iter().map(|&id| {
+            let mesh = scene.mesh(id);
+            TreeGeometry {
+                positions: mesh.positions().to_vec(),
+                indices: mesh.indices().to_vec(),
+            }
+        }));
+        for (id, instance) in shared {
+            let tree = instanced.partition_point(|&m| m < instance.mesh) as u32;
+            let to_prepared = placement.after(&instance.transform);
+            let placing = Placing::Instanced {
+                instance: id,
+                to_prepared,
+            };
+            placings.push((first_mesh_tree + tree, placing));
+        }
+
+        let non_finite_triangles = trees.iter_mut().map(drop_non_finite).sum();
+        let bvhs: Vec<Bvh> = trees
+            .par_iter()
+            .map(|tree| Bvh::build(&tree.positions, &tree.indices, builder))
+            .collect();
+        let tracer = Tracer::new(bvhs, &transforms(&placings));
+        Self {
+            tracer,
+            trees,
+            placings,
+            non_finite_triangles,
+        }
+    }
+
+    /// Bytes of triangles and trees.
+    pub fn memory_bytes(&self) -> usize {
+        let triangles: usize = self
+            .trees
+            .iter()
+            .map(|t| size_of_val(t.positions.as_slice()) + size_of_val(t.indices.as_slice()))
+            .sum();
+        triangles + self.tracer.memory_bytes()
+    }
+}
+
+fn transforms(placings: &[(u32, Placing)]) -> Vec<(u32, DAffine3)> {
+    placings
+        .iter()
+        .map(|(tree, placing)| match placing {
+            Placing::Flattened(_) => (*tree, DAffine3::IDENTITY),
+            Placing::Instanced { to_prepared, .. } => (*tree, *to_prepared),
+        })
+        .collect()
+}
+
+/// The meshes that are kept as instances, in rising order: none while flattening all is cheap,
+/// else those whose copies alone would take a noticeable share.
+fn instanced_meshes(scene: &Scene) -> Vec<MeshId> {
+    let mut uses = vec![0u64; scene.meshes.len()];
+    for instance in &scene.instances {
+        uses[instance.mesh.0 as usize] += 1;
+    }
+    let copies = |id: usize| uses[id].saturating_sub(1) * scene.meshes[id].indices().len() as u64;
+    let total: u64 = (0..uses.len()).map(copies).sum();
+    if total <= FLATTEN_BUDGET {
+        return Vec::new();
+    }
+    (0..uses.len())
+        .filter(|&id| copies(id) > FLATTEN_BUDGET / 64)
+        .map(|id| MeshId(id as u32))
+        .collect()
+}
+
+/// One tree of all `instances`, in prepared coordinates.
+fn flatten(
+    scene: &Scene,
+    instances: &[(u32, &Instance)],
+    placement: &Placement,
+) -> (TreeGeometry, Vec<Part>) {
+    let mut parts = Vec::with_capacity(instances.len());
+    let mut bases = Vec::with_capacity(instances.len());
+    let (mut vertices, mut triangles) = (0u32, 0u32);
+    for &(id, instance) in instances {
+        let mesh = scene.mesh(instance.mesh);
+        parts.push(Part {
+            first_triangle: triangles,
+            instance: id,
+        });
+        bases.push(vertices);
+        triangles += mesh.indices().len() as u32;
+        vertices += mesh.positions().len() as u32;
+    }
+    let positions = instances
+        .par_iter()
+        .flat_map(|(_, instance)| {
+            let to_prepared = placement.after(&instance.transform);
+            scene
+                .mesh(instance.mesh)
+                .positions()
+                .par_iter()
+                .map(move |p| to_prepared.transform_point3(p.as_dvec3()).as_vec3())
+        })
+        .collect();
+    let indices = instances
+        .par_iter()
+        .zip(&bases)
+        .flat_map(|((_, instance), &base)| {
+            scene
+                .mesh(instance.mesh)
+                .indices()
+                .par_iter()
+                .map(move |corners| corners.map(|i| i + base))
+        })
+        .collect();
+    (TreeGeometry { positions, indices }, parts)
+}
+
+/// Collapses triangles with a vertex that is not finite to a point, so that the numbers of the
+/// others stay what they are; returns how many there were.
+fn drop_non_finite(tree: &mut TreeGeometry) -> u64 {
+    let TreeGeometry { positions, indices } = tree;
+    if positions.par_iter().all(|p| p.is_finite()) {
+        return 0;
+    }
+    let dropped = indices
+        .par_iter_mut()
+        .filter(|corners| corners.iter().any(|&i| !positions[i as usize].is_finite()))
+        .map(|corners| *corners = [corners[0]; 3])
+        .count();
+    for p in positions.iter_mut().filter(|p| !p.is_finite()) {
+        *p = Vec3::ZERO;
+    }
+    dropped as u64
+}

@@ -1,0 +1,184 @@
+//! From what the author said to what rays meet.
+//!
+//! Takes a [`Scene`] apart into triangles in one set of single-precision coordinates, the trees
+//! over them, and lights in the same coordinates. What leaves here can be rendered without
+//! failing.
+
+mod geometry;
+mod placement;
+mod surface;
+
+use crate::bvh::{Builder, Hit};
+use crate::camera::Camera;
+use crate::import::{WarningCode, Warnings};
+use crate::light::Light;
+use crate::math::{DAffine3, DVec3, Mat3, Ray, Vec3, gamma};
+use crate::scene::{Background, Placed, Scene};
+
+use geometry::Geometry;
+pub use placement::Placement;
+pub use surface::Surface;
+
+/// A scene that is ready to be rendered.
+#[derive(Debug)]
+pub struct PreparedScene<'a> {
+    /// What it was made from.
+    pub scene: &'a Scene,
+    /// The coordinates that it lives in.
+    pub placement: Placement,
+    /// Lights in prepared coordinates, in file order.
+    pub lights: Vec<Light>,
+    /// What rays bring back that leave the scene.
+    pub background: Background,
+    geometry: Geometry,
+    /// Per instance of the scene: takes normals of its mesh to prepared coordinates.
+    normal_matrices: Vec<Mat3>,
+    /// Per instance of the scene: -1 where its transform mirrors, else 1.
+    orientation: Vec<f32>,
+    /// Whether any material lets light pass.
+    has_transparency: bool,
+}
+
+/// A prepared scene, and what was repaired on the way.
+#[derive(Debug)]
+pub struct Prepared<'a> {
+    /// The scene.
+    pub scene: PreparedScene<'a>,
+    /// What was repaired.
+    pub warnings: Warnings,
+}
+
+/// Makes `scene` ready to be rendered.
+pub fn prepare(scene: &Scene, builder: Builder) -> Prepared<'_> {
+    let placement = Placement::of(scene);
+    let geometry = Geometry::build(scene, &placement, builder);
+    let mut warnings = Warnings::default();
+    warnings.add_many(
+        WarningCode::NonFiniteVertex,
+        "triangles with a vertex that is not a finite number were left out",
+        geometry.non_finite_triangles,
+    );
+    let linear = |t: &DAffine3| t.matrix3;
+    let prepared = PreparedScene {
+        scene,
+        placement,
+        lights: scene.lights.iter().map(|l| light(l, &placement)).collect(),
+        background: scene.background,
+        normal_matrices: scene
+            .instances
+            .iter()
+            .map(|i| normal_matrix(&i.transform))
+            .collect(),
+        orientation: scene
+            .instances
+            .iter()
+            .map(|i| linear(&i.transform).determinant().signum() as f32)
+            .collect(),
+        has_transparency: scene.materials.iter().any(|m| !m.is_opaque()),
+        geometry,
+    };
+    Prepared {
+        scene: prepared,
+        warnings,
+    }
+}
+
+fn light(placed: &Placed<Light>, placement: &Placement) -> Light {
+    let offset = placement.point(placed.origin);
+    placed.item.placed(placement.scale as f32, offset)
+}
+
+/// Takes normals along: the cofactors of the transform, scaled to a largest element of 1, which
+/// are defined even where the inverse is not.
+fn normal_matrix(transform: &DAffine3) -> Mat3 {
+    let m = transform.matrix3;
+    let largest = m
+        .to_cols_array()
+        .map(f64::abs)
+        .into_iter()
+        .fold(0.0, f64::max);
+    let [a, b, c] = [m.x_axis, m.y_axis, m.z_axis].map(|v| v / largest);
+    let sign = a.cross(b).dot(c).signum();
+    let [x, y, z] = [b.cross(c), c.cross(a), a.cross(b)].map(|v: DVec3| (v * sign).as_vec3());
+    Mat3::from_cols(x, y, z)
+}
+
+impl PreparedScene<'_> {
+    /// A camera of the scene in prepared coordinates.
+    pub fn camera(&self, placed: &Placed<Camera>) -> Camera {
+        let offset = self.placement.point(placed.origin);
+        placed.item.placed(self.placement.scale as f32, offset)
+    }
+
+    /// A distance along a unit direction, in world units.
+    pub fn world_distance(&self, prepared: f32) -> f32 {
+        (f64::from(prepared) / self.placement.scale) as f32
+    }
+
+    /// A point in world coordinates.
+    pub fn world_point(&self, prepared: Vec3) -> DVec3 {
+        prepared.as_dvec3() / self.placement.scale + self.placement.origin
+    }
+
+    /// The nearest hit of `ray`, or the nearest beyond `after`, a former hit of the same ray.
+    ///
+    /// Hits at the same distance come in the order of their triangles, so that a walk from hit to
+    /// hit meets each of several coincident surfaces once; and a ray through the edge of two
+    /// triangles crosses one surface there, not two.
+    pub fn closest_hit(&self, ray: &Ray, after: Option<&Hit>) -> Option<Hit> {
+        match after {
+            None => self.geometry.tracer.closest_hit(ray),
+            Some(last) => self.geometry.tracer.closest_hit_if(ray, |hit| {
+                order(hit) > order(last) && !self.is_same_crossing(ray, last, hit)
+            }),
+        }
+    }
+
+    /// Whether two hits of a ray are on an edge or corner that their triangles share, and the
+    /// triangles face the same way.
+    fn is_same_crossing(&self, ray: &Ray, a: &Hit, b: &Hit) -> bool {
+        let is_near = a.instance == b.instance && b.t - a.t <= gamma(8) * b.t.abs();
+        if !(is_near && is_on_edge(a) && is_on_edge(b)) {
+            return false;
+        }
+        let (p, q) = (self.vertices(a), self.vertices(b));
+        let faces = |[x, y, z]: [DVec3; 3]| {
+            let normal = (y - x).cross(z - x);
+            normal.dot(ray.direction.as_dvec3()) < 0.0
+        };
+        p.iter().any(|v| q.contains(v)) && faces(p) == faces(q)
+    }
+
+    /// Whether anything that no light passes is in the way of `ray`.
+    pub fn is_blocked(&self, ray: &Ray) -> bool {
+        if self.has_transparency {
+            self.geometry
+                .tracer
+                .any_hit_if(ray, |hit| self.is_opaque(hit))
+        } else {
+            self.geometry.tracer.any_hit(ray)
+        }
+    }
+
+    /// Whether any material lets light pass.
+    pub fn has_transparency(&self) -> bool {
+        self.has_transparency
+    }
+
+    /// Bytes of triangles, trees and tables, beyond what the scene itself holds.
+    pub fn memory_bytes(&self) -> usize {
+        self.geometry.memory_bytes()
+            + size_of_val(self.normal_matrices.as_slice())
+            + size_of_val(self.orientation.as_slice())
+            + size_of_val(self.lights.as_slice())
+    }
+}
+
+/// Whether a hit is on the border of its triangle, up to rounding of its barycentric weights.
+fn is_on_edge(hit: &Hit) -> bool {
+    hit.u.min(hit.v).min(1.0 - hit.u - hit.v) <= 4.0 * f32::EPSILON
+}
+
+fn order(hit: &Hit) -> (f32, u32, u32) {
+    (hit.t, hit.instance, hit.triangle)
+}

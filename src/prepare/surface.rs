@@ -1,0 +1,299 @@
+//! From a hit to everything that shading reads.
+
+use crate::bvh::Hit;
+use crate::interaction::{Interaction, rounding_error};
+use crate::material::{Lookup, MAX_UV_SETS, Material, NormalMap};
+use crate::math::{DVec3, Frame, Mat3, Ray, UnitVec3, Vec2, Vec3, gamma};
+use crate::scene::{Instance, Mesh};
+use crate::texture::Encoding;
+
+use super::PreparedScene;
+use super::geometry::Placing;
+
+/// What a ray met: where, of what material, and what textures are read with.
+#[derive(Clone, Copy, Debug)]
+pub struct Surface<'a> {
+    /// The point.
+    pub interaction: Interaction,
+    /// What it is made of.
+    pub material: &'a Material,
+    /// What the material reads there.
+    pub lookup: Lookup<'a>,
+}
+
+/// A hit traced back to the scene's own triangle.
+struct Located<'a> {
+    instance: &'a Instance,
+    instance_number: u32,
+    mesh: &'a Mesh,
+    corners: [u32; 3],
+    /// Weights of the corners; they add up to 1.
+    weights: [f32; 3],
+}
+
+impl Located<'_> {
+    /// A vertex attribute, interpolated; `zero` is where the sum starts.
+    fn interpolate<T: Copy>(&self, values: &[T], mix: impl Fn(T, f32, T, f32, T, f32) -> T) -> T {
+        let [a, b, c] = self.corners.map(|i| values[i as usize]);
+        let [wa, wb, wc] = self.weights;
+        mix(a, wa, b, wb, c, wc)
+    }
+}
+
+fn mix2(a: Vec2, wa: f32, b: Vec2, wb: f32, c: Vec2, wc: f32) -> Vec2 {
+    a * wa + b * wb + c * wc
+}
+
+fn mix3(a: Vec3, wa: f32, b: Vec3, wb: f32, c: Vec3, wc: f32) -> Vec3 {
+    a * wa + b * wb + c * wc
+}
+
+fn mix4(a: [f32; 4], wa: f32, b: [f32; 4], wb: f32, c: [f32; 4], wc: f32) -> [f32; 4] {
+    std::array::from_fn(|i| a[i] * wa + b[i] * wb + c[i] * wc)
+}
+
+impl<'a> PreparedScene<'a> {
+    fn locate(&self, hit: &Hit) -> Located<'a> {
+        let (_, placing) = &self.geometry.placings[hit.instance as usize];
+        let (instance_number, triangle) = match placing {
+            Placing::Flattened(parts) => {
+                let part = parts.partition_point(|p| p.first_triangle <= hit.triangle) - 1;
+                let part = parts[part];
+                (part.instance, hit.triangle - part.first_triangle)
+            }
+            Placing::Instanced { instance, .. } => (*instance, hit.triangle),
+        };
+        let instance = &self.scene.instances[instance_number as usize];
+        let mesh = self.scene.mesh(instance.mesh);
+        Located {
+            instance,
+            instance_number,
+            mesh,
+            corners: mesh.indices()[triangle as usize],
+            weights: [1.0 - hit.u - hit.v, hit.u, hit.v],
+        }
+    }
+
+    fn lookup(&self, at: &Located) -> Lookup<'a> {
+        let mut uvs = [Vec2::ZERO; MAX_UV_SETS];
+        for (uv, set) in uvs.iter_mut().zip(at.mesh.uv_sets()) {
+            *uv = at.interpolate(set, mix2);
+        }
+        let colors = at.mesh.colors();
+        Lookup {
+            textures: &self.scene.textures,
+            images: &self.scene.images,
+            uvs,
+            color: if colors.is_empty() {
+                [1.0; 4]
+            } else {
+                at.interpolate(colors, mix4)
+            },
+        }
+    }
+
+    fn material(&self, at: &Located) -> &'a Material {
+        &self.scene.materials[at.instance.material.0 as usize]
+    }
+
+    /// Whether no light passes the triangle that was hit, wherever it was hit.
+    pub fn is_opaque(&self, hit: &Hit) -> bool {
+        !self.has_transparency || self.material(&self.locate(hit)).is_opaque()
+    }
+
+    /// Everything that shading reads at `hit` of `ray`.
+    pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface<'a> {
+        let at = self.locate(hit);
+        let material = self.material(&at);
+        let lookup = self.lookup(&at);
+
+        let vertices = self.vertices(hit);
+        let edges = [vertices[1] - vertices[0], vertices[2] - vertices[0]];
+        let (u, v) = (f64::from(hit.u), f64::from(hit.v));
+        let exact = vertices[0] + edges[0] * u + edges[1] * v;
+        let point = exact.as_vec3();
+        let wo = UnitVec3::normalize(-ray.direction).unwrap_or(UnitVec3::Z);
+
+        let outward = unit(edges[0].cross(edges[1])).unwrap_or(wo);
+        let outward = if self.orientation[at.instance_number as usize] < 0.0 {
+            -outward
+        } else {
+            outward
+        };
+        let is_front = outward.dot(*wo) >= 0.0;
+        let geometric_normal = if is_front { outward } else { -outward };
+        let smooth = self.smooth_normal(&at).unwrap_or(outward);
+        let bumped = match &material.normal_map {
+            Some(map) => self.bumped(map, &at, &lookup, edges, smooth),
+            None => smooth,
+        };
+        Surface {
+            interaction: Interaction {
+                point,
+                point_error: self.point_error(hit, ray, point),
+                geometric_normal,
+                shading_normal: facing(bumped, geometric_normal, wo),
+                wo,
+                is_front,
+            },
+            material,
+            lookup,
+        }
+    }
+
+    /// The corners of the triangle that was hit, as traced, in prepared coordinates.
+    pub(super) fn vertices(&self, hit: &Hit) -> [DVec3; 3] {
+        let (tree, placing) = &self.geometry.placings[hit.instance as usize];
+        let tree = &self.geometry.trees[*tree as usize];
+        let corners = tree.indices[hit.triangle as usize];
+        let corners = corners.map(|i| tree.positions[i as usize].as_dvec3());
+        match placing {
+            Placing::Flattened(_) => corners,
+            Placing::Instanced { to_prepared, .. } => {
+                corners.map(|p| to_prepared.transform_point3(p))
+            }
+        }
+    }
+
+    /// Where a triangle is traced as it is, its points are rounded once. A ray to an instance is
+    /// rounded on its way into the instance's coordinates too, and so is all that starts there.
+    fn point_error(&self, hit: &Hit, ray: &Ray, point: Vec3) -> Vec3 {
+        match &self.geometry.placings[hit.instance as usize].1 {
+            Placing::Flattened(_) => rounding_error(point),
+            Placing::Instanced { to_prepared, .. } => {
+                let forward = Mat3::from_cols_array(
+                    &to_prepared.matrix3.to_cols_array().map(|c| c.abs() as f32),
+                );
+                let inverse = to_prepared.inverse();
+                let backward =
+                    Mat3::from_cols_array(&inverse.matrix3.to_cols_array().map(|c| c.abs() as f32));
+                let shift = inverse.translation.abs().as_vec3();
+                let reach = backward * ray.origin.abs().max(point.abs()) + shift;
+                rounding_error(point) + forward * reach * gamma(8)
+            }
+        }
+    }
+
+    /// The interpolated vertex normal, pointing outwards; `None` where the mesh has none.
+    fn smooth_normal(&self, at: &Located) -> Option<UnitVec3> {
+        let normals = at.mesh.normals();
+        if normals.is_empty() {
+            return None;
+        }
+        let normal = at.interpolate(normals, mix3);
+        UnitVec3::normalize(self.normal_matrices[at.instance_number as usize] * normal)
+    }
+
+    /// `normal` bent by a normal map.
+    fn bumped(
+        &self,
+        map: &NormalMap,
+        at: &Located,
+        lookup: &Lookup,
+        edges: [DVec3; 2],
+        normal: UnitVec3,
+    ) -> UnitVec3 {
+        let tangent_space = self.map_normal(map, lookup);
+        let frame = self
+            .vertex_frame(at, normal)
+            .or_else(|| texture_frame(map, at, edges, normal))
+            .unwrap_or_else(|| Frame::around(normal));
+        UnitVec3::normalize(frame.to_world(tangent_space)).unwrap_or(normal)
+    }
+
+    fn map_normal(&self, map: &NormalMap, lookup: &Lookup) -> Vec3 {
+        let texel = |lookup: &Lookup| lookup.texel(&map.texture, Encoding::Linear);
+        if !map.is_height {
+            let [x, y, z, _] = texel(lookup).map(|c| 2.0 * c - 1.0);
+            return Vec3::new(x * map.scale, y * map.scale, z);
+        }
+        // Slopes of the height between the neighbouring texels, in heights per texel.
+        let texture = &self.scene.textures[map.texture.texture.0 as usize];
+        let image = &self.scene.images[texture.image.0 as usize];
+        let step = Vec2::new(1.0 / image.width as f32, 1.0 / image.height as f32);
+        let height = |offset: Vec2| {
+            let uv = lookup.uvs[usize::from(map.texture.uv_set).min(MAX_UV_SETS - 1)];
+            let uv = map.texture.transform.transform_point2(uv) + offset;
+            texture.eval(image, uv, Encoding::Linear)[0]
+        };
+        let dx = Vec2::new(step.x, 0.0);
+        let dy = Vec2::new(0.0, step.y);
+        let slope = Vec2::new(height(dx) - height(-dx), height(-dy) - height(dy)) * 0.5;
+        (-slope * map.scale).extend(1.0)
+    }
+
+    /// The frame of the mesh's own tangents around `normal`; `None` where it has none.
+    fn vertex_frame(&self, at: &Located, normal: UnitVec3) -> Option<Frame> {
+        let tangents = at.mesh.tangents();
+        if tangents.is_empty() {
+            return None;
+        }
+        let [x, y, z, sign] = at.interpolate(tangents, mix4);
+        let tangent =
+            at.instance
+                .transform
+                .matrix3
+                .mul_vec3(DVec3::new(x.into(), y.into(), z.into()));
+        let mirrored = self.orientation[at.instance_number as usize];
+        frame_along(normal, unit(tangent)?.get(), sign * mirrored)
+    }
+}
+
+/// The frame whose tangent follows u of the map's own texture coordinates.
+fn texture_frame(
+    map: &NormalMap,
+    at: &Located,
+    edges: [DVec3; 2],
+    normal: UnitVec3,
+) -> Option<Frame> {
+    let uvs = at.mesh.uv_sets().get(usize::from(map.texture.uv_set))?;
+    let [a, b, c] = at
+        .corners
+        .map(|i| map.texture.transform.transform_point2(uvs[i as usize]));
+    let (d1, d2) = ((b - a).as_dvec2(), (c - a).as_dvec2());
+    let determinant = d1.perp_dot(d2);
+    if determinant == 0.0 {
+        return None;
+    }
+    let sign = determinant.signum();
+    let tangent = unit((edges[0] * d2.y - edges[1] * d1.y) * sign)?;
+    // v grows downwards: green points against it.
+    let toward_v = (edges[1] * d1.x - edges[0] * d2.x) * sign;
+    let handed = normal.as_dvec3().cross(tangent.as_dvec3()).dot(-toward_v);
+    frame_along(normal, *tangent, if handed < 0.0 { -1.0 } else { 1.0 })
+}
+
+/// The frame around `normal` whose first axis is nearest to `tangent`.
+fn frame_along(normal: UnitVec3, tangent: Vec3, handedness: f32) -> Option<Frame> {
+    let tangent = UnitVec3::normalize(tangent - *normal * normal.dot(tangent))?;
+    Some(Frame {
+        tangent: *tangent,
+        bitangent: normal.cross(*tangent) * handedness.signum(),
+        normal,
+    })
+}
+
+/// `normal` on the side of the surface that the viewer is on, and bent so far towards the viewer
+/// that it faces it: shading normals may lean over the horizon, and nothing is seen from there.
+fn facing(normal: UnitVec3, geometric: UnitVec3, wo: UnitVec3) -> UnitVec3 {
+    const LEAST_COSINE: f32 = 1e-3;
+    let normal = if normal.dot(*geometric) < 0.0 {
+        -normal
+    } else {
+        normal
+    };
+    let cos = normal.dot(*wo);
+    if cos >= LEAST_COSINE {
+        return normal;
+    }
+    UnitVec3::normalize(*normal + *wo * (LEAST_COSINE - cos)).unwrap_or(geometric)
+}
+
+/// The direction of `v`, normalised in double precision.
+pub(super) fn unit(v: DVec3) -> Option<UnitVec3> {
+    let largest = v.abs().max_element();
+    if !(largest > 0.0 && largest.is_finite()) {
+        return None;
+    }
+    UnitVec3::normalize((v / largest).as_vec3())
+}
