@@ -128,6 +128,34 @@ fn multiplication_by_sharing_is_refused() {
     assert!(refused(&morphs).contains("asks for far more memory"));
 }
 
+#[test]
+fn long_names_and_lists_cost_no_more_than_they_are_long() {
+    let name = "x".repeat(1_000_000);
+    let mut cameras = Doc::triangle();
+    cameras.push(
+        "cameras",
+        json!({ "name": name, "perspective": { "yfov": 1 } }),
+    );
+    cameras.json["nodes"] = list(20_000, |_| json!({ "camera": 0 }));
+    cameras.json["scenes"] = json!([{ "nodes": list(20_000, |i| json!(i)) }]);
+    assert!(refused(&cameras).contains("asks for far more memory"));
+
+    let mut meshes = Doc::triangle();
+    let broken = json!({ "attributes": { "POSITION": 0 }, "mode": 0 });
+    meshes.json["meshes"] =
+        json!([{ "name": name, "primitives": list(20_000, |_| broken.clone()) }]);
+    let start = Instant::now();
+    meshes.import().unwrap();
+    assert!(start.elapsed() < Duration::from_secs(20));
+
+    let mut extensions = Doc::triangle();
+    extensions.json["extensionsUsed"] = list(100_000, |i| json!(format!("VENDOR_{i}")));
+    extensions.json["extensionsRequired"] = list(100_000, |i| json!(format!("VENDOR_{i}")));
+    let start = Instant::now();
+    extensions.import().unwrap();
+    assert!(start.elapsed() < Duration::from_secs(20));
+}
+
 /// Pseudo-random numbers (Steele et al. 2014, "Fast Splittable Pseudorandom Number Generators").
 struct SplitMix(u64);
 

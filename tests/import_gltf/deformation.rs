@@ -153,6 +153,17 @@ fn broken_skins_are_named() {
 }
 
 #[test]
+fn instances_of_a_skinned_mesh_are_one() {
+    let mut doc = skinned();
+    let scales = doc.floats("VEC3", &[1.0; 6]);
+    let instancing = json!({ "attributes": { "SCALE": scales } });
+    doc.json["nodes"][0]["extensions"] = json!({ "EXT_mesh_gpu_instancing": instancing });
+    let imported = doc.import().unwrap();
+    assert_eq!(imported.scene.instances.len(), 1);
+    assert_eq!(warned(&imported, WarningCode::Approximated), 1);
+}
+
+#[test]
 fn a_skin_without_weights_leaves_the_mesh_in_its_node() {
     let mut doc = skinned();
     let attributes = doc.primitive()["attributes"].as_object_mut().unwrap();

@@ -33,6 +33,7 @@ fn buffers_lie_beside_the_file_or_inside() {
         ("my%20cat%20%E2%9D%A4.bin", "my cat \u{2764}.bin"),
         ("my cat \u{2764}.bin", "my cat \u{2764}.bin"),
         ("100%.bin", "100%.bin"),
+        ("deep\\cat.bin", "deep/cat.bin"),
         ("deep/../cat.bin", "cat.bin"),
         (
             &format!("data:application/octet-stream;base64,{data}"),
