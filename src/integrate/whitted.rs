@@ -90,7 +90,7 @@ impl<'a> Whitted<'a> {
                 return total + weight * self.scene.background.radiance;
             };
             let surface = self.scene.surface(&from.ray, &hit);
-            let opacity = surface.material.opacity(&surface.lookup);
+            let opacity = surface.visibility();
             let mut straight = Rgb::splat(1.0 - opacity);
             if opacity > 0.0 {
                 let here = Pending {

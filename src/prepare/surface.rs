@@ -24,6 +24,15 @@ pub struct Surface<'a> {
 }
 
 impl Surface<'_> {
+    /// Share of what is behind that stays hidden from who looks here, in `[0, 1]`.
+    pub fn visibility(&self) -> f32 {
+        if self.interaction.is_front || self.material.is_seen_from_back() {
+            self.material.opacity(&self.lookup)
+        } else {
+            0.0
+        }
+    }
+
     /// Index of refraction of the side beyond over the index of the viewer's side.
     pub fn relative_index(&self) -> f32 {
         let specular = &self.bsdf.specular;

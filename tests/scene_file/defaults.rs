@@ -142,6 +142,7 @@ fn assert_same(a: &Imported, b: &Imported) {
         format!("{:?}", a.scene.lights),
         format!("{:?}", b.scene.lights)
     );
+    assert_eq!(a.scene.background, b.scene.background);
 }
 
 #[test]

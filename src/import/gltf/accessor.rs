@@ -199,6 +199,8 @@ impl AccessorReader<'_> {
         let replaced = to_usize(sparse.count).filter(|&n| n <= count);
         let replaced = replaced
             .ok_or_else(|| problem(format!("replaces {} of {count} elements", sparse.count)))?;
+        let bytes_of_each = size + size_of::<(u32, &[u8])>();
+        self.budget.take((replaced * bytes_of_each) as u64)?;
         let width = component_size(index, places.component_type)?;
         let at = self.elements(
             index,

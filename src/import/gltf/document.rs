@@ -252,11 +252,17 @@ impl Extensions {
     }
 }
 
+/// Characters of a name that messages show.
+const SHOWN_CHARACTERS: usize = 80;
+
 /// How messages call entry `index` of a list of things of this kind: by its name, if it has one.
 pub fn place(kind: &str, index: usize, name: Option<&str>) -> String {
-    match name {
-        Some(name) if !name.is_empty() => format!("{kind} {name:?}"),
-        _ => format!("{kind} {index}"),
+    let Some(name) = name.filter(|name| !name.is_empty()) else {
+        return format!("{kind} {index}");
+    };
+    match name.char_indices().nth(SHOWN_CHARACTERS) {
+        Some((end, _)) => format!("{kind} {:?}…", &name[..end]),
+        None => format!("{kind} {name:?}"),
     }
 }
 

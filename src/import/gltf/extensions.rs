@@ -1,5 +1,6 @@
 //! What becomes of extensions: known, harmless, left out with a word, or refused.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::document::Document;
@@ -93,14 +94,19 @@ pub fn check(
             warnings.add(WarningCode::RequiredExtension, message);
         }
     }
+    let required: BTreeSet<&String> = document.extensions_required.iter().collect();
     for name in &document.extensions_used {
-        let is_compression = name == DRACO || MESHOPT.contains(&name.as_str());
-        if !is_known(name) && !is_compression && !document.extensions_required.contains(name) {
+        if !is_known(name) && !is_judged_by_use(name) && !required.contains(name) {
             let message = format!("{name} is not supported: {}", effect(name));
             warnings.add(WarningCode::IgnoredExtension, message);
         }
     }
     Ok(())
+}
+
+/// Whether only the things that use an extension can tell if anything is missing without it.
+fn is_judged_by_use(name: &str) -> bool {
+    name == DRACO || name == BASISU || MESHOPT.contains(&name)
 }
 
 fn is_known(name: &str) -> bool {

@@ -158,8 +158,9 @@ impl<'a, 'b> Meshes<'a, 'b> {
         warnings: &mut Warnings,
     ) -> Result<Option<Part>, Problem> {
         let document = self.accessors.document;
-        let mode = Mode::from_code(primitive.mode)
-            .ok_or_else(|| Problem::Invalid(format!("mode {:?} is not known", primitive.mode)))?;
+        let code = primitive.mode.unwrap_or(Mode::DEFAULT_CODE);
+        let mode = Mode::from_code(code)
+            .ok_or_else(|| Problem::Invalid(format!("mode {code} is not known")))?;
         if mode == Mode::NotTriangles {
             let message = format!("{place}: points and lines are not shown");
             warnings.add(WarningCode::NotTriangles, message);
@@ -222,6 +223,7 @@ impl<'a, 'b> Meshes<'a, 'b> {
         {
             anchor = Some(skin.anchor);
         }
+        accessors.budget.take(name.len() as u64)?;
         let mesh = geometry.into_mesh(name);
         let mesh = mesh.map_err(|error| Problem::Invalid(error.to_string()))?;
         self.meshes.push(mesh);

@@ -41,10 +41,10 @@ use light::Lights;
 use meshes::{Meshes, Part};
 use texture::Textures;
 
-use super::{ImportError, ImportOptions, Imported, Problem, Warnings, files};
+use super::{ImportError, ImportOptions, Imported, Problem, WarningCode, Warnings, files};
 use crate::material::{Material, MaterialId, MetallicRoughness};
 use crate::math::DAffine3;
-use crate::scene::{Instance, Scene};
+use crate::scene::{Instance, Placed, Scene};
 
 /// Imports a `.gltf` or `.glb` file.
 ///
@@ -158,13 +158,24 @@ impl SceneBuilder<'_, '_> {
             let Some(world) = &graph.world[node] else {
                 continue;
             };
-            let light = lights.of_node(document, node, world, self.warnings);
-            self.scene.lights.extend(light);
-            let camera = camera::of_node(document, node, world, self.warnings);
-            self.scene.cameras.extend(camera);
+            if let Some(light) = lights.of_node(document, node, world, self.warnings) {
+                self.charge_for(node, &light)?;
+                self.scene.lights.push(light);
+            }
+            if let Some(camera) = camera::of_node(document, node, world, self.warnings) {
+                self.charge_for(node, &camera)?;
+                self.scene.cameras.push(camera);
+            }
             self.add_mesh(node, world)?;
         }
         Ok(())
+    }
+
+    /// Many nodes may share one light or camera of a long name.
+    fn charge_for<T>(&self, node: usize, placed: &Placed<T>) -> Result<(), ImportError> {
+        let bytes = size_of::<Placed<T>>() + placed.name.len();
+        let taken = self.accessors.budget.take(bytes as u64);
+        taken.map_err(|problem| self.error(self.accessors.document.node_place(node), problem))
     }
 
     fn add_mesh(&mut self, node: usize, world: &DAffine3) -> Result<(), ImportError> {
@@ -177,6 +188,11 @@ impl SceneBuilder<'_, '_> {
         let place = || self.accessors.document.node_place(node);
         let transforms = instancing::transforms(self.accessors, entry);
         match transforms.map_err(|problem| self.error(place(), problem))? {
+            Some(_) if parts.iter().any(|part| part.anchor.is_some()) => {
+                let message = format!("{}: instances of a skinned mesh are shown as one", place());
+                self.warnings.add(WarningCode::Approximated, message);
+                self.add_instances(node, &parts, world)
+            }
             Some(transforms) => {
                 for transform in transforms {
                     self.add_instances(node, &parts, &(*world * transform))?;

@@ -145,7 +145,7 @@ fn encoded_bytes<'a>(
 
 fn image_name(index: usize, image: &ImageEntry) -> String {
     match &image.uri {
-        Some(uri) if image.name.is_none() || !uri.starts_with("data:") => uri::label(uri),
+        Some(uri) if !uri::holds_data(uri) => uri::label(uri),
         _ => place("image", index, image.name.as_deref()),
     }
 }

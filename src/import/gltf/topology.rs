@@ -14,14 +14,17 @@ pub enum Mode {
 }
 
 impl Mode {
+    /// `mode` of primitives that do not say.
+    pub const DEFAULT_CODE: u32 = 4;
+
     /// From `mode` of a primitive; `None` where that is not known.
-    pub fn from_code(mode: Option<u32>) -> Option<Self> {
+    pub fn from_code(mode: u32) -> Option<Self> {
         match mode {
-            Some(0..=3) => Some(Self::NotTriangles),
-            Some(4) | None => Some(Self::Triangles),
-            Some(5) => Some(Self::Strip),
-            Some(6) => Some(Self::Fan),
-            Some(_) => None,
+            0..=3 => Some(Self::NotTriangles),
+            4 => Some(Self::Triangles),
+            5 => Some(Self::Strip),
+            6 => Some(Self::Fan),
+            _ => None,
         }
     }
 

@@ -30,19 +30,23 @@ pub fn read(folder: &Path, uri: &str) -> Result<Vec<u8>, Problem> {
         .decode_utf8()
         .map_err(|_| Problem::Invalid(format!("the file name {uri:?} is not UTF-8")))?;
     let path = local_path(folder, &decoded)?;
-    // Some exporters do not encode their file names, and mean the percent sign as it is.
+    // Some exporters do not encode their file names, and some write those of Windows.
     let unencoded = local_path(folder, uri)?;
-    let path = if !path.exists() && unencoded.exists() {
-        unencoded
-    } else {
-        path
-    };
-    Ok(files::read(&path)?)
+    let with_slashes = local_path(folder, &decoded.replace('\\', "/"))?;
+    let found = [&path, &unencoded, &with_slashes]
+        .into_iter()
+        .find(|path| path.exists());
+    Ok(files::read(found.unwrap_or(&path))?)
+}
+
+/// Whether `uri` holds the data itself.
+pub fn holds_data(uri: &str) -> bool {
+    strip_scheme(uri, "data:").is_some()
 }
 
 /// How messages call `uri`: its file name, or its kind where it holds the data itself.
 pub fn label(uri: &str) -> String {
-    if strip_scheme(uri, "data:").is_some() {
+    if holds_data(uri) {
         "data URI".into()
     } else {
         percent_decode_str(uri).decode_utf8_lossy().into_owned()

@@ -51,7 +51,7 @@
 //! | key | range | default | |
 //! |---|---|---|---|
 //! | `radiance` | colour ≥ 0 | black | what rays that leave the scene bring back, W/(m² sr) |
-//! | `ambient` | colour ≥ 0 | black | irradiance / π added to every matte surface (`whitted`) |
+//! | `ambient` | colour ≥ 0 | black; with default lights 0.15 | irradiance / π added to every matte surface (`whitted`) |
 //!
 //! # `[[model]]`
 //!

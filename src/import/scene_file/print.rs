@@ -7,6 +7,7 @@ use std::fmt::Write;
 use super::camera::View;
 use super::defaults::RigLight;
 use super::settings::{INTEGRATORS, PATTERNS, TARGETS};
+use crate::color::Rgb;
 use crate::math::DVec3;
 use crate::scene::Settings;
 
@@ -51,6 +52,11 @@ pub fn view(view: &View) -> String {
         let _ = writeln!(text, "focus_distance = {distance:?}");
     }
     text
+}
+
+/// `[background]` with nothing but ambient light.
+pub fn ambient(Rgb { r, g, b }: Rgb) -> String {
+    format!("[background]\nambient = [{r:?}, {g:?}, {b:?}]\n")
 }
 
 /// `[[light]]`.
