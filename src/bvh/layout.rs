@@ -4,7 +4,7 @@
 use crate::math::Aabb;
 
 /// The largest number of levels of nodes that a builder makes.
-pub(super) const MAX_DEPTH: usize = 36;
+pub(super) const MAX_DEPTH: usize = 64;
 
 /// What a node's child is: another node, or one block of triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,10 +1,11 @@
 //! From triangles to a tree.
 //!
-//! A wide node is made directly: its range of primitives is split in two, then the part with
-//! the largest box again, until there is a part for each child. Subtrees are built in
-//! parallel; where a split falls and how nodes are numbered depends on the triangles alone,
+//! A wide node over many primitives is made directly: its range is split in two, then the part
+//! with the largest box again, until there is a part for each child. These are built in
+//! parallel. Small parts become binary trees that are collapsed (`collapse`). Where a split falls and how nodes are numbered depends on the triangles alone,
 //! so the tree is the same for any number of threads.
 
+mod collapse;
 mod primitive;
 mod split;
 
@@ -13,6 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use super::layout::{Block, ChildRef, MAX_DEPTH, Node, Tree};
 use crate::math::{Aabb, Vec3};
+use collapse::{Branch, Branches};
 use primitive::{Part, Primitive, corners, primitives};
 use split::{split_median, split_sah};
 
@@ -67,12 +69,19 @@ impl std::str::FromStr for Builder {
 /// Leaves of [`Builder::Median`] hold at most so many triangles.
 const MEDIAN_LEAF: usize = 4;
 
-/// Levels of nodes below which the surface area heuristic gives way to halving, which bounds
-/// the depth: halving needs log_W(2^31) < 11 more levels for any W of 8 or more.
-const SAH_DEPTH: usize = MAX_DEPTH - 11;
+/// Parts of up to so many primitives are built by one thread, and collapsed.
+const SMALL: usize = 1 << SMALL_BITS;
+const SMALL_BITS: usize = 12;
 
-/// Parts of up to so many primitives are built by one thread.
-const SERIAL_PART: usize = 1 << 13;
+/// Levels of nodes over large parts below which the surface area heuristic gives way to
+/// halving, which bounds the depth: a node of 8 children or more takes 3 bits off the size.
+const SAH_DEPTH: usize = 16;
+
+/// The same for levels of binary splits in small parts.
+const SMALL_SAH_DEPTH: usize = 24;
+
+const _: () =
+    assert!(SAH_DEPTH + (31 - SMALL_BITS).div_ceil(3) + SMALL_SAH_DEPTH + SMALL_BITS <= MAX_DEPTH);
 
 /// Builds the tree of all triangles that can be hit.
 pub(super) fn build<const W: usize>(
@@ -97,8 +106,8 @@ pub(super) fn build<const W: usize>(
             nodes: Vec::new(),
             leaves: primitives.chunks(W).map(make_block).collect(),
         },
-        Builder::Median => Maker::new(MEDIAN_LEAF, 0, make_block).make_all(&mut primitives),
-        Builder::Balanced => Maker::new(W, SAH_DEPTH, make_block).make_all(&mut primitives),
+        Builder::Median => Maker::new(MEDIAN_LEAF, false, make_block).make_all(&mut primitives),
+        Builder::Balanced => Maker::new(W, true, make_block).make_all(&mut primitives),
     };
     Tree {
         bounds,
@@ -116,7 +125,7 @@ pub(super) fn build_over_boxes<const W: usize>(boxes: &[Aabb]) -> (Vec<Node<W>>,
         .map(|(i, bounds)| Primitive::new(bounds.min, bounds.max, i))
         .collect();
     let fragment =
-        Maker::new(1, SAH_DEPTH, |leaf: &[Primitive]| leaf[0].index()).make_all(&mut primitives);
+        Maker::new(1, true, |leaf: &[Primitive]| leaf[0].index()).make_all(&mut primitives);
     (fragment.nodes, fragment.leaves)
 }
 
@@ -150,16 +159,16 @@ impl<const W: usize, L> Fragment<W, L> {
 struct Maker<F> {
     /// Ranges of at most so many primitives become leaves.
     leaf_size: usize,
-    /// Nodes at this depth and below are split by halving.
-    sah_depth: usize,
+    /// Whether splits go by the surface area heuristic, or halve.
+    by_area: bool,
     make_leaf: F,
 }
 
 impl<F> Maker<F> {
-    fn new(leaf_size: usize, sah_depth: usize, make_leaf: F) -> Self {
+    fn new(leaf_size: usize, by_area: bool, make_leaf: F) -> Self {
         Self {
             leaf_size,
-            sah_depth,
+            by_area,
             make_leaf,
         }
     }
@@ -177,7 +186,7 @@ impl<F> Maker<F> {
         fragment
     }
 
-    /// Makes the node, or the leaf, of `part`.
+    /// Makes the subtree of `part`.
     fn make<const W: usize, L>(
         &self,
         part: Part<'_>,
@@ -188,14 +197,14 @@ impl<F> Maker<F> {
         L: Send,
         F: Fn(&[Primitive]) -> L + Sync,
     {
-        if part.primitives.len() > self.leaf_size {
-            return self.make_node(part, depth, out);
+        if part.primitives.len() > SMALL {
+            self.make_large(part, depth, out)
+        } else {
+            self.make_small(part, out)
         }
-        out.leaves.push((self.make_leaf)(part.primitives));
-        ChildRef::leaf(out.leaves.len() - 1, part.primitives.len())
     }
 
-    fn make_node<const W: usize, L>(
+    fn make_large<const W: usize, L>(
         &self,
         part: Part<'_>,
         depth: usize,
@@ -205,35 +214,81 @@ impl<F> Maker<F> {
         L: Send,
         F: Fn(&[Primitive]) -> L + Sync,
     {
-        debug_assert!(depth < MAX_DEPTH);
-        let parallel = part.primitives.len() > SERIAL_PART;
-        let parts = self.split::<W>(part, depth < self.sah_depth);
+        let parts = self.split_widely::<W>(part, self.by_area && depth < SAH_DEPTH);
         let boxes: Vec<_> = parts.iter().map(|part| part.bounds.to_aabb()).collect();
+        let subtrees: Vec<_> = parts
+            .into_par_iter()
+            .map(|part| {
+                let mut fragment = Fragment::new();
+                let root = self.make(part, depth + 1, &mut fragment);
+                (fragment, root)
+            })
+            .collect();
         let index = out.nodes.len();
         out.nodes.push(Node::EMPTY);
-        let children: Vec<ChildRef> = if parallel {
-            let subtrees: Vec<_> = parts
-                .into_par_iter()
-                .map(|part| {
-                    let mut fragment = Fragment::new();
-                    let root = self.make(part, depth + 1, &mut fragment);
-                    (fragment, root)
-                })
-                .collect();
-            let append = |(fragment, root)| out.append(fragment, root);
-            subtrees.into_iter().map(append).collect()
-        } else {
-            let make = |part| self.make(part, depth + 1, out);
-            parts.into_iter().map(make).collect()
-        };
-        for (lane, (bounds, child)) in boxes.iter().zip(children).enumerate() {
+        for (lane, (bounds, (fragment, root))) in boxes.iter().zip(subtrees).enumerate() {
+            let child = out.append(fragment, root);
             out.nodes[index].set(lane, bounds, child);
         }
         ChildRef::node(index)
     }
 
+    fn make_small<const W: usize, L>(&self, part: Part<'_>, out: &mut Fragment<W, L>) -> ChildRef
+    where
+        F: Fn(&[Primitive]) -> L,
+    {
+        let Part {
+            primitives,
+            bounds,
+            centroids,
+        } = part;
+        let part = Part {
+            primitives: &mut *primitives,
+            bounds,
+            centroids,
+        };
+        let branches = Branches::<W>::grow(part, self.leaf_size, &|part, depth| {
+            self.split(part, self.by_area && depth < SMALL_SAH_DEPTH)
+        });
+        self.emit(&branches, branches.root(), primitives, out)
+    }
+
+    /// Writes the collapsed subtree of `branch`, whose tree is over `primitives`.
+    fn emit<const W: usize, L>(
+        &self,
+        branches: &Branches<W>,
+        branch: &Branch<W>,
+        primitives: &[Primitive],
+        out: &mut Fragment<W, L>,
+    ) -> ChildRef
+    where
+        F: Fn(&[Primitive]) -> L,
+    {
+        if branch.is_leaf() {
+            let leaf = &primitives[branch.range.clone()];
+            out.leaves.push((self.make_leaf)(leaf));
+            return ChildRef::leaf(out.leaves.len() - 1, leaf.len());
+        }
+        let index = out.nodes.len();
+        out.nodes.push(Node::EMPTY);
+        for (lane, slot) in branches.slots_of(branch).into_iter().enumerate() {
+            let child = self.emit(branches, slot, primitives, out);
+            out.nodes[index].set(lane, &slot.bounds.to_aabb(), child);
+        }
+        ChildRef::node(index)
+    }
+
+    /// Splits in two.
+    fn split<'a>(&self, part: Part<'a>, by_area: bool) -> (Part<'a>, Part<'a>) {
+        if by_area {
+            split_sah(part, self.leaf_size)
+        } else {
+            split_median(part)
+        }
+    }
+
     /// Splits into at most `W` parts: by area and heuristic, or into equal halves.
-    fn split<'a, const W: usize>(&self, part: Part<'a>, by_area: bool) -> Vec<Part<'a>> {
+    fn split_widely<'a, const W: usize>(&self, part: Part<'a>, by_area: bool) -> Vec<Part<'a>> {
         let weight = |part: &Part<'_>| {
             if by_area {
                 part.bounds.half_area()
@@ -248,11 +303,7 @@ impl<F> Maker<F> {
                 .max_by(|&i, &j| weight(&parts[i]).total_cmp(&weight(&parts[j])));
             let Some(largest) = largest else { break };
             let part = parts.swap_remove(largest);
-            let (left, right) = if by_area {
-                split_sah(part, self.leaf_size)
-            } else {
-                split_median(part)
-            };
+            let (left, right) = self.split(part, by_area);
             parts.extend([left, right]);
         }
         parts
