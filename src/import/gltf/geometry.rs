@@ -153,7 +153,7 @@ impl GeometryReader<'_, '_> {
                 (0..vertices as u32).collect()
             }
         };
-        if shape.mode == Mode::Triangles && corners.len() % 3 != 0 {
+        if shape.mode == Mode::Triangles && !corners.len().is_multiple_of(3) {
             let message = format!(
                 "{}: its last triangle has only {} corners",
                 self.place,
@@ -187,8 +187,11 @@ impl GeometryReader<'_, '_> {
         };
         let mut colors: Vec<[f32; 4]> = colors.unwrap_or_default();
         for channel in colors.as_flattened_mut() {
-            // Unlike `clamp`, this also makes a number of NaN.
-            *channel = channel.max(0.0).min(1.0);
+            *channel = if channel.is_nan() {
+                0.0
+            } else {
+                channel.clamp(0.0, 1.0)
+            };
         }
         colors
     }
