@@ -8,7 +8,7 @@ use crate::math::{Vec2, Vec3};
 use crate::scene::{Mesh, MeshError};
 
 /// Sets of texture coordinates that are kept.
-const MAX_UV_SETS: usize = 4;
+pub const MAX_UV_SETS: usize = 4;
 
 /// What defines the shape of a primitive, and nothing else: primitives that agree in this share
 /// one mesh.
@@ -28,7 +28,7 @@ pub struct Shape<'a> {
 #[derive(Debug, Default)]
 pub struct Geometry {
     /// Which vertices of the accessors these are.
-    pub selection: Option<Selection>,
+    pub selection: Selection,
     /// Vertices that the accessors have.
     pub stored_vertices: usize,
     pub positions: Vec<Vec3>,
@@ -83,7 +83,7 @@ impl GeometryReader<'_, '_> {
         }
         geometry.colors = self.colors(attributes, vertices, &selection, warnings);
         geometry.uv_sets = self.uv_sets(attributes, vertices, &selection, warnings);
-        geometry.selection = Some(selection);
+        geometry.selection = selection;
         Ok(Some(geometry))
     }
 
