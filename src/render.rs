@@ -12,8 +12,8 @@ use rayon::prelude::*;
 use crate::camera::{Camera, film_position};
 use crate::color::Rgb;
 use crate::film::{Film, Pixel, RayCounts, Rect, RejectedSample};
-use crate::integrate::{Integrator, RayLog, RayRecord, View, ViewKind, integrator};
-use crate::math::UVec2;
+use crate::integrate::{Integrator, RayKind, RayLog, RayRecord, View, ViewKind, integrator};
+use crate::math::{DVec3, Ray, UVec2, Vec2, Vec3};
 use crate::prepare::PreparedScene;
 use crate::sampling::Sampler;
 use crate::scene::Settings;
@@ -49,7 +49,6 @@ struct Tile {
     rect: Rect,
     pixels: Vec<Pixel>,
     layers: Vec<Vec<[f64; 3]>>,
-    /// Samples taken of each pixel: all of them but for the tile's last wave, if it was stopped.
     rejected: u64,
     first_rejected: Option<RejectedSample>,
     rays: RayCounts,
@@ -58,7 +57,7 @@ struct Tile {
 /// Renders `job` on the current thread pool.
 ///
 /// `observe` hears of every finished tile, from any thread. Once `cancel` is set the render ends
-/// within a few rows of pixels, and the film holds what there is.
+/// within a few samples, and the film holds what there is.
 pub fn render(job: &Job, cancel: &AtomicBool, observe: &(dyn Fn(Progress) + Sync)) -> Film {
     let integrator = integrator(job.scene, job.settings);
     let samples = job.settings.sampling.samples_per_pixel();
@@ -114,39 +113,44 @@ impl Tile {
         let mut log = RayLog::default();
         let mut taken = 0;
         for (i, pixel) in self.rect.pixels().enumerate() {
-            if pixel.x == self.rect.x && cancel.load(Ordering::Relaxed) {
-                break;
-            }
             for index in wave.clone() {
+                if cancel.load(Ordering::Relaxed) {
+                    break;
+                }
                 let (ray, sampler) = camera_sample(job, pixel, index);
                 let value = integrator.radiance(&ray, &sampler, &mut log);
-                if !self.pixels[i].add_sample(value) {
+                if self.pixels[i].add_sample(value) {
+                    self.add_layers(job, i, &ray);
+                } else {
                     self.rejected += 1;
                     let sample = RejectedSample { pixel, index };
                     self.first_rejected = self.first_rejected.or(Some(sample));
                 }
-                for (layer, &kind) in self.layers.iter_mut().zip(&job.layers) {
-                    let scene = job.scene;
-                    let value = View { scene, kind }.value(&ray);
-                    for (sum, v) in layer[i].iter_mut().zip(value) {
-                        *sum += f64::from(v);
-                    }
-                }
+                taken += 1;
             }
-            taken += u64::from(wave.end - wave.start);
         }
         self.rays.add(&log.counts);
         taken
     }
+
+    /// Adds what the layers show along `ray` to the tile's pixel number `i`.
+    fn add_layers(&mut self, job: &Job, i: usize, ray: &Ray) {
+        let scene = job.scene;
+        for (layer, &kind) in self.layers.iter_mut().zip(&job.layers) {
+            for (sum, value) in layer[i].iter_mut().zip(View { scene, kind }.value(ray)) {
+                *sum += f64::from(value);
+            }
+        }
+    }
 }
 
-fn camera_sample(job: &Job, pixel: UVec2, index: u32) -> (crate::math::Ray, Sampler) {
+fn camera_sample(job: &Job, pixel: UVec2, index: u32) -> (Ray, Sampler) {
     let sampler = Sampler::new(&job.settings.sampling, pixel, index);
     let film = film_position(pixel, sampler.camera());
     let lens = if job.camera.lens_radius > 0.0 {
         sampler.lens()
     } else {
-        crate::math::Vec2::ZERO
+        Vec2::ZERO
     };
     (job.camera.ray(film, job.settings.size, lens), sampler)
 }
@@ -167,7 +171,6 @@ fn assemble(job: &Job, tiles: &[Tile], is_complete: bool) -> Film {
         for (i, pixel) in tile.rect.pixels().enumerate() {
             let to = ((pixel.y - crop.y) * crop.width + pixel.x - crop.x) as usize;
             film.pixels[to] = tile.pixels[i];
-            // Dropped samples have layers all the same.
             let taken = tile.pixels[i].count().max(1) as f64;
             for (layer, from) in film.layers.iter_mut().zip(&tile.layers) {
                 layer[to] = from[i].map(|sum| (sum / taken) as f32);
@@ -186,7 +189,24 @@ pub struct Replay {
     /// Its value.
     pub value: Rgb,
     /// Every ray that was traced for it, in order.
-    pub rays: Vec<RayRecord>,
+    pub rays: Vec<ReplayedRay>,
+}
+
+/// A ray in world coordinates.
+#[derive(Clone, Copy, Debug)]
+pub struct ReplayedRay {
+    /// Why it was traced.
+    pub kind: RayKind,
+    /// Scattering events before it.
+    pub depth: u32,
+    /// Where it starts.
+    pub origin: DVec3,
+    /// Where it goes; of length 1.
+    pub direction: Vec3,
+    /// How far away it met something, metres; `None` where it did not, and for shadow rays.
+    pub distance: Option<f64>,
+    /// As in [`RayRecord::weight`].
+    pub weight: Rgb,
 }
 
 /// Traces sample `index` of `pixel` again and keeps its rays.
@@ -194,23 +214,40 @@ pub fn replay(job: &Job, pixel: UVec2, index: u32) -> Replay {
     let (ray, sampler) = camera_sample(job, pixel, index);
     let mut log = RayLog::keeping();
     let value = integrator(job.scene, job.settings).radiance(&ray, &sampler, &mut log);
+    let in_world = |record: RayRecord| {
+        let length = f64::from(record.ray.direction.length());
+        let to_world = length / job.scene.placement.scale;
+        ReplayedRay {
+            kind: record.kind,
+            depth: record.depth,
+            origin: job.scene.world_point(record.ray.origin),
+            direction: record.ray.direction.normalize_or_zero(),
+            distance: record.t.map(|t| f64::from(t) * to_world),
+            weight: record.weight,
+        }
+    };
     Replay {
         value,
-        rays: log.records.unwrap_or_default(),
+        rays: log.records.into_iter().flatten().map(in_world).collect(),
     }
 }
 
 impl fmt::Display for Replay {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for record in &self.rays {
-            let indent = 2 * record.depth as usize;
-            let Rgb { r, g, b } = record.weight;
-            let (o, d) = (record.ray.origin, record.ray.direction);
-            write!(f, "{:indent$}{:?} from {o} along {d}", "", record.kind)?;
-            if let Some(t) = record.t {
-                write!(f, " meets a surface at t = {t}")?;
+        for ray in &self.rays {
+            let indent = 2 * ray.depth as usize;
+            let Rgb { r, g, b } = ray.weight;
+            let (origin, direction) = (ray.origin, ray.direction);
+            write!(
+                f,
+                "{:indent$}{} from {origin} along {direction}",
+                "", ray.kind
+            )?;
+            match (ray.kind, ray.distance) {
+                (RayKind::Shadow(_), _) => writeln!(f, " brings {r} {g} {b}")?,
+                (_, Some(distance)) => writeln!(f, " hits at {distance} m, weight {r} {g} {b}")?,
+                (_, None) => writeln!(f, " leaves the scene, weight {r} {g} {b}")?,
             }
-            writeln!(f, ", weight {r} {g} {b}")?;
         }
         let Rgb { r, g, b } = self.value;
         writeln!(f, "radiance {r} {g} {b}")

@@ -187,6 +187,8 @@ fn trees(model: &mut Model) {
         (-11.0, -7.0, 4.0, 1.5),
         (13.0, -9.0, 1.0, 1.6),
         (-15.0, 3.0, 3.1, 1.4),
+        // Beside the view, for its shadow.
+        (12.2, 8.6, 5.0, 1.35),
     ];
     model.place(oak, places.map(|(x, z, a, s)| stand(x, z, a, s)).to_vec());
     let fir = model.mesh("fir", conifer(bark, needles, 22, 6));

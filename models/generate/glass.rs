@@ -1,4 +1,4 @@
-//! Glass and mirrors on a chequered floor.
+//! Glass and mirrors on a chequered floor, in a ring of columns.
 
 use glam::{DQuat, DVec3};
 
@@ -28,6 +28,7 @@ pub fn glass_and_mirrors() -> Model {
     cube(&mut model, tinted);
     wall_mirror(&mut model, mirror);
     matte_balls(&mut model);
+    colonnade(&mut model);
     model
 }
 
@@ -77,7 +78,7 @@ fn cube(model: &mut Model, material: MaterialId) {
     let mut part = Part::new(material);
     part.cuboid(DVec3::new(-0.35, 0.0, -0.35), DVec3::new(0.35, 0.7, 0.35));
     let mesh = model.mesh("cube", vec![part]);
-    let place = Placement::turned(DVec3::new(-1.95, 0.001, 0.35), 0.5, 1.0);
+    let place = Placement::turned(DVec3::new(-2.2, 0.001, 0.75), 0.5, 1.0);
     model.place(mesh, vec![place]);
 }
 
@@ -123,4 +124,28 @@ fn matte_balls(model: &mut Model) {
     model.add("red ball", vec![ball(red, (-0.75, 0.3, -0.55), 0.3)]);
     model.add("yellow ball", vec![ball(yellow, (2.3, 0.35, 0.3), 0.35)]);
     model.add("blue ball", vec![ball(blue, (-1.35, 0.2, 1.75), 0.2)]);
+}
+
+/// Columns around the floor: something to be seen in mirrors and glass.
+fn colonnade(model: &mut Model) {
+    const COUNT: u32 = 14;
+    const RADIUS: f64 = 5.7;
+    const HEIGHT: f64 = 3.0;
+    let marble = model.material("marble", [0.62, 0.55, 0.47], Finish::Matte);
+    let (mut shafts, mut blocks) = (Part::new(marble), Part::new(marble));
+    let at = |i: u32| {
+        // The camera stands between two columns.
+        let angle = std::f64::consts::TAU * (f64::from(i) + 0.65) / f64::from(COUNT);
+        DVec3::new(RADIUS * angle.cos(), 0.0, RADIUS * angle.sin())
+    };
+    for i in 0..COUNT {
+        let foot = at(i);
+        shafts.tube(foot, foot + DVec3::Y * HEIGHT, 0.2, 0.16, 20);
+        for (y, width, height) in [(0.0, 0.56, 0.16), (HEIGHT - 0.14, 0.5, 0.14)] {
+            blocks.beam(foot + DVec3::Y * y, foot + DVec3::Y * (y + height), width);
+        }
+        let top = DVec3::Y * (HEIGHT + 0.15);
+        blocks.beam(foot + top, at(i + 1) + top, 0.3);
+    }
+    model.add("colonnade", vec![shafts, blocks]);
 }

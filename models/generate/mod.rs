@@ -73,28 +73,28 @@ fn house_with_garden() -> Model {
     house::add_house(&mut model);
     garden::add_garden(&mut model);
     model.camera = Some(Camera {
-        position: DVec3::new(7.6, 2.6, 13.2),
-        look_at: DVec3::new(0.2, 1.9, 0.0),
-        vertical_fov: 0.6,
+        position: DVec3::new(8.2, 2.9, 15.0),
+        look_at: DVec3::new(0.0, 2.35, 0.0),
+        vertical_fov: 0.63,
     });
     model.lights = vec![
         Light::Directional {
             name: "sun",
             direction: DVec3::new(-0.62, -0.55, -0.56),
-            color: [1.0, 0.82, 0.6],
+            color: [1.0, 0.76, 0.5],
             irradiance: 3.4,
         },
         Light::Point {
             name: "lamp over the door",
             position: DVec3::new(house::DOOR, 2.32, house::HALF.1 + 0.55),
             color: [1.0, 0.7, 0.35],
-            intensity: 1.6,
+            intensity: 2.4,
         },
         Light::Point {
             name: "lamp in the room",
             position: DVec3::new(1.6, 2.3, 0.0),
             color: [1.0, 0.65, 0.3],
-            intensity: 9.0,
+            intensity: 16.0,
         },
     ];
     model

@@ -104,12 +104,12 @@ fn write_material(text: &mut String, material: &Material) {
             let index = decimal(index);
             push(
                 text,
-                format_args!("Kd 0 0 0\nKs 1 1 1\nNs 1000\nTf {color}\nNi {index}\nillum 7\n"),
+                format_args!(
+                    "Kd 0 0 0\nKs 0.04 0.04 0.04\nNs 1000\nTf {color}\nNi {index}\nillum 7\n"
+                ),
             );
         }
-        Finish::Mirror => push(
-            text,
-            format_args!("Kd 0 0 0\nKs {color}\nNs 1000\nillum 3\n"),
-        ),
+        // A metal without roughness: `illum 3` would add a glossy lobe to the mirror.
+        Finish::Mirror => push(text, format_args!("Kd {color}\nPm 1\nPr 0\n")),
     }
 }

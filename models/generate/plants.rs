@@ -53,12 +53,12 @@ fn add_leaf(part: &mut Part, at: DVec3, outward: DVec3, random: &mut Random) {
 pub fn conifer(bark: MaterialId, needles: [MaterialId; 2], detail: u32, seed: u64) -> Vec<Part> {
     let mut random = Random::new(seed);
     let mut wood = Part::new(bark);
-    wood.tube(DVec3::Y * -0.05, DVec3::Y * 0.9, 0.035, 0.006, 7);
+    wood.tube(DVec3::Y * -0.05, DVec3::Y * 0.97, 0.035, 0.004, 7);
     let mut foliage = needles.map(Part::new);
-    let layers = 11;
+    let layers = 14;
     for layer in 0..layers {
         let t = f64::from(layer) / f64::from(layers - 1);
-        let (base, reach) = (0.14 + 0.78 * t, 0.25 * (1.0 - t) + 0.03);
+        let (base, reach) = (0.13 + 0.82 * t, 0.25 * (1.0 - t) + 0.035);
         let boughs = (f64::from(detail) * (1.0 - 0.6 * t)).round() as u32;
         let turn = random.angle();
         for bough in 0..boughs {

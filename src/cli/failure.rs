@@ -20,7 +20,7 @@ pub enum Failure {
     /// The arguments are wrong, or ask for help: exit status 2, or 0 for help.
     Usage(clap::Error),
     /// The job failed: exit status 1.
-    Job(JobError),
+    Job(Box<JobError>),
     /// The job was ended by the user, who was told so: exit status 1.
     Interrupted,
     /// Whoever reads our output has seen enough: exit status 0, in silence.
@@ -55,12 +55,12 @@ impl Failure {
 
     /// A job that failed for this reason.
     pub fn job(message: impl Display) -> Self {
-        Self::Job(JobError {
+        Self::Job(Box::new(JobError {
             message: message.to_string(),
             help: None,
             source_text: None,
             place: None,
-        })
+        }))
     }
 
     /// An error of standard output.
@@ -95,12 +95,12 @@ impl From<ImportError> for Failure {
         let is_folder = error.path.is_dir();
         let help = "a scene is a file: .toml, .gltf, .glb or .obj";
         let (source_text, place) = source_line(&error).unzip();
-        Self::Job(JobError {
+        Self::Job(Box::new(JobError {
             message: error.to_string(),
             help: is_folder.then(|| help.to_owned()),
             source_text,
             place,
-        })
+        }))
     }
 }
 
@@ -135,11 +135,10 @@ struct Shown<'a>(&'a JobError);
 
 impl Display for Shown<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let is_plain = !io::stderr().is_terminal() || std::env::var_os("NO_COLOR").is_some();
-        let mut theme = if is_plain {
-            GraphicalTheme::none()
+        let mut theme = if io::stderr().is_terminal() {
+            GraphicalTheme::unicode_nocolor()
         } else {
-            GraphicalTheme::unicode()
+            GraphicalTheme::none()
         };
         theme.characters.error = "error:".to_owned();
         let handler = GraphicalReportHandler::new_themed(theme)

@@ -11,7 +11,7 @@ use halfshade::scene::Scene;
 use serde::Serialize;
 
 use super::Failure;
-use super::console::{Console, print};
+use super::console::print;
 use super::options::SceneOptions;
 
 /// Print what is in a scene or model, and what was ignored or repaired
@@ -26,14 +26,11 @@ pub struct InfoOptions {
     /// Print JSON
     #[arg(long)]
     json: bool,
-    #[command(flatten)]
-    console: Console,
 }
 
 /// Does what the options say.
 pub fn run(options: &InfoOptions) -> Result<(), Failure> {
     let imported = import(&options.scene.scene, &options.scene.import_options())?;
-    options.console.detail("preparing, to know its memory");
     let info = Info::of(&imported);
     if options.json {
         let json = serde_json::to_string_pretty(&info).map_err(Failure::job)?;

@@ -14,7 +14,7 @@ pub struct Interrupt {
 }
 
 impl Interrupt {
-    /// Listens for Ctrl-C (and, on Unix, for the signals that end a job or close a terminal).
+    /// Listens for Ctrl-C.
     ///
     /// Before [`Interrupt::rendering_begins`] there is nothing to save, and the program ends at
     /// once. Where the system lets nobody listen, it always does.

@@ -2,12 +2,14 @@
 
 use std::sync::Arc;
 
+use halfshade::camera::Camera;
 use halfshade::film::{Film, Rect};
 use halfshade::import::{Imported, import};
+use halfshade::math::UVec2;
 use halfshade::output::exr::Window;
 use halfshade::prepare::{Prepared, prepare};
 use halfshade::render::{Job, render, replay};
-use halfshade::scene::Settings;
+use halfshade::scene::{Placed, Scene, Settings};
 
 use super::Failure;
 use super::arguments::SampleId;
@@ -37,58 +39,41 @@ pub fn run(options: &RenderOptions) -> Result<(), Failure> {
 
 fn run_on_pool(options: &RenderOptions, targets: Option<&Targets>) -> Result<(), Failure> {
     let interrupt = Interrupt::listen();
-    let console = options.console;
     let mut clock = StepClock::start();
-    let mut imported = import(&options.scene.scene, &options.import_options())?;
-    let import = clock.step();
-    announce(console, &imported);
-    options.apply(&mut imported.settings);
+    let mut seconds = Seconds::default();
+
+    let imported = load(options)?;
     let settings = &imported.settings;
     let crop = crop(options, settings)?;
-    let camera = imported.scene.cameras.first().ok_or_else(|| {
-        Failure::job(format_args!(
-            "{}: there is no camera, and nothing to point one at",
-            options.scene.scene.display()
-        ))
-    })?;
+    let camera = camera(options, &imported.scene)?;
+    seconds.import = clock.step();
 
-    clock.step();
     let Prepared { scene, warnings } = prepare(&imported.scene, options.work.bvh);
-    let prepare = clock.step();
-    console.warn_all(&warnings);
+    seconds.prepare = clock.step();
+    options.console.warn_all(&warnings);
+    let views = options.output.layers.iter().filter_map(|kind| kind.view());
     let job = Job {
         camera: scene.camera(camera),
         scene: &scene,
         settings,
         crop,
-        layers: options
-            .output
-            .layers
-            .iter()
-            .filter_map(|kind| kind.view())
-            .collect(),
+        layers: views.collect(),
     };
     let Some(targets) = targets else {
         return replay_one(options, &job);
     };
 
-    let film = watched(&job, &interrupt, console);
-    let render = clock.step();
-    say_rejected(console, &film);
+    let film = watched(&job, &interrupt, options.console);
+    seconds.render = clock.step();
     let values = LayerValues::of_film(&film, &options.output.layers);
     let window = Window {
         picture: settings.size,
-        corner: halfshade::math::UVec2::new(crop.x, crop.y),
+        corner: UVec2::new(crop.x, crop.y),
         size: crop.size(),
     };
     targets.write(window, &values, &metadata(options, settings, crop))?;
-    let seconds = Seconds {
-        import,
-        prepare,
-        render,
-        output: clock.step(),
-        total: clock.total(),
-    };
+    seconds.output = clock.step();
+    seconds.total = clock.total();
     let done = Done {
         film: &film,
         pixels: values.picture(),
@@ -102,6 +87,22 @@ fn run_on_pool(options: &RenderOptions, targets: Option<&Targets>) -> Result<(),
         },
     };
     finish(options, targets, &done)
+}
+
+/// The scene, with settings that follow the options.
+fn load(options: &RenderOptions) -> Result<Imported, Failure> {
+    let mut imported = import(&options.scene.scene, &options.import_options())?;
+    announce(options.console, &imported);
+    options.apply(&mut imported.settings);
+    Ok(imported)
+}
+
+/// The camera that is looked through.
+fn camera<'a>(options: &RenderOptions, scene: &'a Scene) -> Result<&'a Placed<Camera>, Failure> {
+    scene.cameras.first().ok_or_else(|| {
+        let name = options.scene.scene.display();
+        Failure::job(format_args!("{name}: there is no camera to look through"))
+    })
 }
 
 /// Warnings, and what was added to a scene that lacked it.
@@ -163,6 +164,7 @@ fn replay_one(options: &RenderOptions, job: &Job) -> Result<(), Failure> {
 /// Renders with a progress bar, until it is done or the user has seen enough.
 fn watched(job: &Job, interrupt: &Arc<Interrupt>, console: Console) -> Film {
     let settings = job.settings;
+    interrupt.rendering_begins();
     console.detail(format_args!(
         "rendering {}x{} pixels, {} samples each, on {} threads",
         job.crop.width,
@@ -178,9 +180,9 @@ fn watched(job: &Job, interrupt: &Arc<Interrupt>, console: Console) -> Film {
         ));
     }
     let progress = RenderProgress::new(console.shows_progress());
-    interrupt.rendering_begins();
     let film = render(job, &interrupt.is_requested, &|p| progress.observe(p));
     progress.finish();
+    say_rejected(console, &film);
     film
 }
 

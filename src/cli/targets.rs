@@ -8,7 +8,7 @@ use halfshade::output::{ImageFormat, OutputError, check_writable};
 
 use super::Failure;
 use super::layers::LayerValues;
-use super::options::RenderOptions;
+use super::options::{OutputOptions, RenderOptions};
 
 /// The files that a render writes.
 pub struct Targets {
@@ -19,39 +19,9 @@ pub struct Targets {
 impl Targets {
     /// What the options ask for; every file can be written as far as one can tell.
     pub fn of(options: &RenderOptions) -> Result<Self, Failure> {
-        let usage = |message: String| Err(Failure::usage("render", message));
         let output = &options.output;
-        let mut paths = output.output.clone();
-        if paths.is_empty() {
-            paths.push(default_output(&options.scene.scene));
-        }
-        let mut images: Vec<(PathBuf, ImageFormat)> = Vec::new();
-        for path in paths {
-            let Some(format) = ImageFormat::of_path(&path) else {
-                return usage(format!(
-                    "{}: pictures are written as .png or .exr",
-                    path.display()
-                ));
-            };
-            if images.iter().any(|(other, _)| *other == path) {
-                return usage(format!("{}: given twice", path.display()));
-            }
-            images.push((path, format));
-        }
-        let has = |format| images.iter().any(|(_, other)| *other == format);
-        if !output.layers.is_empty() && !has(ImageFormat::Exr) {
-            return usage("--layers needs an .exr file among the outputs".to_owned());
-        }
-        let png_option = [
-            (output.exposure.is_some(), "--exposure"),
-            (output.tone_map.is_some(), "--tone-map"),
-            (output.png16, "--png16"),
-        ];
-        if let Some((_, name)) = png_option.iter().find(|(is_given, _)| *is_given)
-            && !has(ImageFormat::Png)
-        {
-            return usage(format!("{name} needs a .png file among the outputs"));
-        }
+        let images = images(options).map_err(usage)?;
+        check_combination(output, &images).map_err(usage)?;
         for path in images.iter().map(|(path, _)| path).chain(&output.stats) {
             check_writable(path)?;
         }
@@ -72,21 +42,77 @@ impl Targets {
         self.images.iter().map(|(path, _)| path.as_path())
     }
 
-    /// Writes all of them; the first that fails ends it.
+    /// Writes all of them, even where one fails; the first error is returned.
     pub fn write(
         &self,
         window: Window,
         values: &LayerValues,
         metadata: &[(&str, String)],
     ) -> Result<(), OutputError> {
-        for (path, format) in &self.images {
-            match format {
-                ImageFormat::Png => png::write(path, window.size, values.picture(), self.png)?,
-                ImageFormat::Exr => exr::write(path, window, &values.layers(), metadata)?,
-            }
-        }
-        Ok(())
+        let write = |(path, format): &(PathBuf, ImageFormat)| match format {
+            ImageFormat::Png => png::write(path, window.size, values.picture(), self.png),
+            ImageFormat::Exr => exr::write(path, window, &values.layers(), metadata),
+        };
+        let results: Vec<_> = self.images.iter().map(write).collect();
+        results.into_iter().collect()
     }
+}
+
+fn usage(message: String) -> Failure {
+    Failure::usage("render", message)
+}
+
+/// The pictures that are asked for, each with the format that its name says.
+fn images(options: &RenderOptions) -> Result<Vec<(PathBuf, ImageFormat)>, String> {
+    let mut paths = options.output.output.clone();
+    if paths.is_empty() {
+        paths.push(default_output(&options.scene.scene));
+    }
+    let mut images: Vec<(PathBuf, ImageFormat)> = Vec::new();
+    for path in paths {
+        let name = path.display();
+        let format = ImageFormat::of_path(&path)
+            .ok_or_else(|| format!("{name}: pictures are written as .png or .exr"))?;
+        if images.iter().any(|(other, _)| *other == path) {
+            return Err(format!("{name}: given twice"));
+        }
+        images.push((path, format));
+    }
+    Ok(images)
+}
+
+/// Options that no file could follow are mistakes.
+fn check_combination(
+    output: &OutputOptions,
+    images: &[(PathBuf, ImageFormat)],
+) -> Result<(), String> {
+    let layers = &output.layers;
+    if (1..layers.len()).any(|i| layers[..i].contains(&layers[i])) {
+        return Err("--layers names a layer twice".to_owned());
+    }
+    for (is_given, option, format, extension) in [
+        (!layers.is_empty(), "--layers", ImageFormat::Exr, ".exr"),
+        (
+            output.exposure.is_some(),
+            "--exposure",
+            ImageFormat::Png,
+            ".png",
+        ),
+        (
+            output.tone_map.is_some(),
+            "--tone-map",
+            ImageFormat::Png,
+            ".png",
+        ),
+        (output.png16, "--png16", ImageFormat::Png, ".png"),
+    ] {
+        if is_given && !images.iter().any(|(_, other)| *other == format) {
+            return Err(format!(
+                "{option} needs a file that ends in {extension} among the outputs"
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// The scene's name with `.png`, in the current folder.

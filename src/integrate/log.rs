@@ -1,5 +1,7 @@
 //! What rays were traced.
 
+use std::fmt;
+
 use crate::color::Rgb;
 use crate::film::RayCounts;
 use crate::math::Ray;
@@ -15,6 +17,17 @@ pub enum RayKind {
     Refracted,
     /// To the light with this number.
     Shadow(u32),
+}
+
+impl fmt::Display for RayKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            RayKind::Camera => write!(f, "camera ray"),
+            RayKind::Reflected => write!(f, "reflected ray"),
+            RayKind::Refracted => write!(f, "refracted ray"),
+            RayKind::Shadow(light) => write!(f, "shadow ray to light {light}"),
+        }
+    }
 }
 
 /// A ray that was traced, and what came of it.

@@ -18,7 +18,7 @@ pub enum ViewKind {
     Albedo,
 }
 
-/// Shows the first surface that is not a hole.
+/// Shows the first surface that can be seen.
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a> {
     /// The scene.
@@ -44,7 +44,7 @@ impl View<'_> {
         let mut last = None;
         while let Some(hit) = self.scene.closest_hit(ray, last.as_ref()) {
             let surface = self.scene.surface(ray, &hit);
-            if surface.material.opacity(&surface.lookup) > 0.0 {
+            if surface.visibility() > 0.0 {
                 return Some((hit.t, surface));
             }
             last = Some(hit);

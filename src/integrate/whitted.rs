@@ -3,15 +3,14 @@
 
 use crate::bvh::Hit;
 use crate::color::Rgb;
-use crate::interaction::Interaction;
 use crate::light::{Light, LightSample, ShadowEnd};
-use crate::material::{Bsdf, fresnel_dielectric, reflect, refract};
+use crate::material::{fresnel_dielectric, reflect, refract};
 use crate::math::Ray;
 use crate::prepare::{PreparedScene, Surface};
 use crate::sampling::Sampler;
 use crate::scene::Settings;
 
-use super::visibility::{relative_index, transmittance};
+use super::visibility::transmittance;
 use super::{Integrator, RayKind, RayLog, RayRecord, light_samples};
 
 /// Rays that count for less than this in every channel are not followed: what is cut off is at
@@ -91,16 +90,15 @@ impl<'a> Whitted<'a> {
                 return total + weight * self.scene.background.radiance;
             };
             let surface = self.scene.surface(&from.ray, &hit);
-            let opacity = surface.material.opacity(&surface.lookup);
+            let opacity = surface.visibility();
             let mut straight = Rgb::splat(1.0 - opacity);
             if opacity > 0.0 {
                 let here = Pending {
                     weight: weight * opacity,
                     ..*from
                 };
-                let bsdf = surface.material.bsdf(&surface.lookup);
-                total += here.weight * self.shade(&surface, &bsdf, &here, sampler, log);
-                straight += opacity * self.scatter(&surface, &bsdf, &here, pending);
+                total += here.weight * self.shade(&surface, &here, sampler, log);
+                straight += opacity * self.scatter(&surface, &here, pending);
             }
             weight *= straight;
             if weight.max_channel() < LEAST_WEIGHT {
@@ -122,18 +120,12 @@ impl<'a> Whitted<'a> {
     }
 
     /// Emitted, ambient and direct light that leaves `surface` to the viewer.
-    fn shade(
-        &self,
-        surface: &Surface,
-        bsdf: &Bsdf,
-        from: &Pending,
-        sampler: &Sampler,
-        log: &mut RayLog,
-    ) -> Rgb {
+    fn shade(&self, surface: &Surface, from: &Pending, sampler: &Sampler, log: &mut RayLog) -> Rgb {
         let at = &surface.interaction;
         let cos_o = at.shading_normal.dot(*at.wo);
         let ambient = self.scene.background.ambient * surface.material.occlusion(&surface.lookup);
-        let mut total = surface.material.emitted(&surface.lookup) + ambient * bsdf.ambient(cos_o);
+        let mut total =
+            surface.material.emitted(&surface.lookup) + ambient * surface.bsdf.ambient(cos_o);
         if from.depth >= self.max_depth {
             return total;
         }
@@ -144,7 +136,7 @@ impl<'a> Whitted<'a> {
             for j in 0..count {
                 let u = sampler.light(from.vertex, number, j, count);
                 if let Some(sample) = light.sample(at.point, u) {
-                    sum += self.direct(at, bsdf, &sample, from, number, log);
+                    sum += self.direct(surface, &sample, from, number, log);
                 }
             }
             total += sum / count as f32;
@@ -155,18 +147,19 @@ impl<'a> Whitted<'a> {
     /// What one sample of a light adds.
     fn direct(
         &self,
-        at: &Interaction,
-        bsdf: &Bsdf,
+        surface: &Surface,
         sample: &LightSample,
         from: &Pending,
         light: u32,
         log: &mut RayLog,
     ) -> Rgb {
+        let at = &surface.interaction;
         let cos_i = at.shading_normal.dot(*sample.wi);
         if cos_i <= 0.0 || at.geometric_normal.dot(*sample.wi) <= 0.0 {
             return Rgb::BLACK;
         }
-        let unshadowed = sample.weight * bsdf.eval(at.shading_normal, at.wo, sample.wi) * cos_i;
+        let scattered = surface.bsdf.eval(at.shading_normal, at.wo, sample.wi);
+        let unshadowed = sample.weight * scattered * cos_i;
         if unshadowed.is_black() {
             return Rgb::BLACK;
         }
@@ -187,19 +180,13 @@ impl<'a> Whitted<'a> {
     }
 
     /// Sends rays on from a mirror or from glass; returns the share that goes straight on.
-    fn scatter(
-        &self,
-        surface: &Surface,
-        bsdf: &Bsdf,
-        from: &Pending,
-        pending: &mut Vec<Pending>,
-    ) -> Rgb {
+    fn scatter(&self, surface: &Surface, from: &Pending, pending: &mut Vec<Pending>) -> Rgb {
         let at = &surface.interaction;
-        let specular = &bsdf.specular;
+        let specular = &surface.bsdf.specular;
         let cos_o = at.shading_normal.dot(*at.wo).min(1.0);
         let mut mirrored = specular.mirrored(cos_o);
         let mut through = specular.transmit;
-        let eta = relative_index(surface);
+        let eta = surface.relative_index();
         if !through.is_black() {
             let reflected = fresnel_dielectric(cos_o, eta);
             mirrored += through * reflected;

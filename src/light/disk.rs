@@ -1,7 +1,7 @@
 //! A one-sided disk of constant radiance.
 
 use super::spherical_ellipse::SphericalEllipse;
-use super::{LightSample, ShadowEnd, shadow_point, unit, weigh};
+use super::{LightSample, ShadowEnd, has_extent, plane_hit, shadow_point, unit, weigh};
 use crate::color::Rgb;
 use crate::math::{DVec3, Ray, UnitVec3, Vec2, Vec3};
 
@@ -44,7 +44,7 @@ impl DiskLight {
 
     /// See [`super::Light::is_delta`].
     pub fn is_delta(&self) -> bool {
-        !(self.radius > 0.0)
+        !has_extent(self.radius)
     }
 
     /// See [`super::Light::placed`].
@@ -62,9 +62,9 @@ impl DiskLight {
             return None;
         }
         let center = self.center.as_dvec3() - ray.origin.as_dvec3();
-        let (t, from_center) = super::plane_hit(ray, center, self.exact_normal())?;
+        let (t, from_center) = plane_hit(ray, center, self.exact_normal())?;
         let radius = f64::from(self.radius);
-        (radius > 0.0 && from_center.length_squared() <= radius * radius)
+        (!self.is_delta() && from_center.length_squared() <= radius * radius)
             .then_some((t, self.radiance))
     }
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::{LightSample, ShadowEnd, weigh};
+use super::{LightSample, ShadowEnd, has_extent, weigh};
 use crate::color::Rgb;
 use crate::math::{Frame, UnitVec3, Vec2, Vec3};
 use crate::sampling::square_to_cone;
@@ -51,6 +51,6 @@ impl DistantLight {
 
     /// See [`super::Light::is_delta`].
     pub fn is_delta(&self) -> bool {
-        !(self.angle_radians > 0.0)
+        !has_extent(self.angle_radians)
     }
 }

@@ -160,9 +160,19 @@ impl Toward {
     }
 }
 
+/// Whether a light of this radius (or angle) casts soft shadows.
+fn has_extent(radius: f32) -> bool {
+    radius > 0.0
+}
+
 /// A vector of length 1, in single precision.
 fn unit(direction: DVec3) -> UnitVec3 {
     UnitVec3::from_normalized(direction.as_vec3())
+}
+
+/// Far quicker than `f64::hypot`, and as good: squares of `f32` numbers do not leave `f64`.
+fn hypotenuse(a: f64, b: f64) -> f64 {
+    (a * a + b * b).sqrt()
 }
 
 /// `color * factor`; `None` where that is black, or more than single precision holds.

@@ -1,6 +1,6 @@
 //! A point light; with a radius it casts soft shadows.
 
-use super::{Falloff, LightSample, ShadowEnd, Toward, weigh};
+use super::{Falloff, LightSample, ShadowEnd, Toward, has_extent, weigh};
 use crate::color::Rgb;
 use crate::math::{Frame, UnitVec3, Vec2, Vec3};
 use crate::sampling::square_to_disk;
@@ -47,11 +47,6 @@ impl PointLight {
             ..*self
         }
     }
-}
-
-/// Whether a light of this radius casts soft shadows.
-pub(super) fn has_extent(radius: f32) -> bool {
-    radius > 0.0
 }
 
 /// A point, uniform by area, of the disk of `radius` around `position` across `wi`; `position`

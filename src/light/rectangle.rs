@@ -1,7 +1,7 @@
 //! A one-sided rectangle of constant radiance.
 
 use super::spherical_rectangle::SphericalRectangle;
-use super::{LightSample, ShadowEnd, shadow_point, unit, weigh};
+use super::{LightSample, ShadowEnd, plane_hit, shadow_point, unit, weigh};
 use crate::color::Rgb;
 use crate::math::{DVec2, DVec3, Ray, Vec2, Vec3};
 
@@ -95,7 +95,7 @@ impl RectangleLight {
         let edges = self.edges()?;
         let center = self.center.as_dvec3() - ray.origin.as_dvec3();
         let normal = edges.cross.normalize();
-        let (t, from_center) = super::plane_hit(ray, center, normal)?;
+        let (t, from_center) = plane_hit(ray, center, normal)?;
         // from_center = u half_u + v half_v, by Cramer's rule.
         let quarter_area = edges.cross.length();
         let u = from_center.cross(edges.half_v).dot(normal) / quarter_area;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::{LightSample, ShadowEnd, Toward, shadow_point, unit, weigh};
+use super::{LightSample, ShadowEnd, Toward, has_extent, shadow_point, unit, weigh};
 use crate::color::Rgb;
 use crate::math::{DVec3, Ray, Vec2, Vec3};
 use crate::sampling::square_to_cone;
@@ -64,7 +64,7 @@ impl SphereLight {
 
     /// See [`super::Light::is_delta`].
     pub fn is_delta(&self) -> bool {
-        !(self.radius > 0.0)
+        !has_extent(self.radius)
     }
 
     /// See [`super::Light::placed`].
@@ -88,11 +88,8 @@ impl SphereLight {
         let center = self.center.as_dvec3() - ray.origin.as_dvec3();
         let along = center.dot(direction);
         let across = center - direction * along;
-        let half_chord_squared = radius * radius - across.length_squared();
-        if !(half_chord_squared >= 0.0) {
-            return None;
-        }
-        let half_chord = half_chord_squared.sqrt();
+        // NaN where the ray misses; no comparison below holds for it.
+        let half_chord = (radius * radius - across.length_squared()).sqrt();
         [along - half_chord, along + half_chord]
             .map(|distance| (distance / length) as f32)
             .into_iter()

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use super::hypotenuse;
 use crate::math::{DVec3, Vec2};
 use crate::sampling::square_to_cone;
 
@@ -59,7 +60,7 @@ impl SphericalEllipse {
         // In the plane of the normal and the centre, the disk is the side from `low` to `high` of
         // a triangle whose third corner is the origin.
         let (low, high) = (offset - radius, offset + radius);
-        let (to_low, to_high) = (low.hypot(height), high.hypot(height));
+        let (to_low, to_high) = (hypotenuse(low, height), hypotenuse(high, height));
         let sum = to_low + to_high;
         // to_low + to_high - 2 radius.
         let gap = if low < 0.0 {
@@ -73,7 +74,7 @@ impl SphericalEllipse {
         let squash = height / (to_low * to_high).sqrt() / cos;
         // Where the bisector of the angle at the origin meets the disk.
         let foot = low * (to_high / sum) + high * (to_low / sum);
-        let length = foot.hypot(height);
+        let length = hypotenuse(foot, height);
         Some(Self {
             wide: lateral.cross(toward_plane),
             narrow: (lateral * height - toward_plane * foot) / length,

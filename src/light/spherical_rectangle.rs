@@ -1,5 +1,6 @@
 //! A rectangle as seen from a point.
 
+use super::hypotenuse;
 use crate::math::{DVec2, DVec3, Vec2};
 
 /// The directions from the origin in which a rectangle is seen
@@ -56,8 +57,8 @@ impl SphericalRectangle {
         let u = u.as_dvec2();
         let x = self.x_of(self.start + u.x * self.solid_angle);
         // With x fixed, solid angle is in proportion to the sine of the elevation.
-        let distance = x.hypot(self.height);
-        let sin = |y: f64| y / y.hypot(distance);
+        let distance = hypotenuse(x, self.height);
+        let sin = |y: f64| y / hypotenuse(y, distance);
         let elevation = sin(self.min.y) + u.y * (sin(self.max.y) - sin(self.min.y));
         let y = elevation * distance / ((1.0 - elevation) * (1.0 + elevation)).max(0.0).sqrt();
         let place = DVec2::new(x, y).clamp(self.min, self.max);
@@ -68,9 +69,9 @@ impl SphericalRectangle {
     /// The x up to which the solid angle from x = 0 is `angle`: the inverse of [`strip`]
     /// (the paper's equation for cos θᵤ).
     fn x_of(&self, angle: f64) -> f64 {
-        let to_low = self.min.y.hypot(self.height);
+        let to_low = hypotenuse(self.min.y, self.height);
         let (sin_low, cos_low) = (self.min.y / to_low, self.height / to_low);
-        let sin_high = self.max.y / self.max.y.hypot(self.height);
+        let sin_high = self.max.y / hypotenuse(self.max.y, self.height);
         let (sin, cos) = angle.sin_cos();
         let f = (sin_high - sin_low * cos) / sin;
         // cos θ / sin θ with cos θ = ±1/√(f² + sin_low²).
@@ -82,6 +83,9 @@ impl SphericalRectangle {
 /// Solid angle of the rectangle from (0, y_low) to (x, y_high) at distance `height`; negative
 /// for negative x.
 fn strip(x: f64, y_low: f64, y_high: f64, height: f64) -> f64 {
-    let quadrant = |y: f64| (x * y).atan2(height * DVec3::new(x, y, height).length());
-    quadrant(y_high) - quadrant(y_low)
+    // That of a rectangle from (0, 0) to (x, y) is the angle of this vector with the x axis,
+    // below a quarter turn; so one arctangent gives the difference of two.
+    let quadrant = |y: f64| DVec2::new(height * DVec3::new(x, y, height).length(), x * y);
+    let (low, high) = (quadrant(y_low), quadrant(y_high));
+    low.perp_dot(high).atan2(low.dot(high))
 }

@@ -1,7 +1,7 @@
 //! A point that shines into a cone.
 
-use super::point::{has_extent, shadow_end};
-use super::{Falloff, LightSample, Toward, weigh};
+use super::point::shadow_end;
+use super::{Falloff, LightSample, Toward, has_extent, weigh};
 use crate::color::Rgb;
 use crate::math::{UnitVec3, Vec2, Vec3};
 

@@ -108,7 +108,11 @@ impl Bsdf {
         let glossy = match self.glossy {
             Glossy::None => Rgb::BLACK,
             Glossy::Phong { reflectance, .. } => reflectance,
-            Glossy::Ggx { f0, f90, .. } => schlick(f0, f90, cos_o),
+            // What a smooth surface mirrors is seen by rays of its own.
+            Glossy::Ggx { f0, f90, .. } => {
+                let rough = schlick(f0, f90, cos_o) - self.specular.mirrored(cos_o);
+                rough.map(|c| c.max(0.0))
+            }
         };
         self.diffuse + glossy
     }

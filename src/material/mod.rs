@@ -36,8 +36,8 @@ pub struct Material {
     pub opacity: TexturedScalar,
     /// Bumps of the shading normal.
     pub normal_map: Option<NormalMap>,
-    /// Whether the file asks for both sides to be seen. Kept for exports and reports: rays meet
-    /// both sides of every surface.
+    /// Whether it is seen from the inside too. A single-sided surface is not there for who looks
+    /// at its back (glTF 2.0, section 3.9.6), but casts its shadow all the same.
     pub is_double_sided: bool,
 }
 
@@ -124,14 +124,22 @@ impl Material {
         }
     }
 
-    /// Whether no light passes it anywhere: neither holes nor glass.
-    pub fn is_opaque(&self) -> bool {
-        let is_glass = match &self.surface {
+    /// Whether it is seen from the back: glass always is, since light that entered it must get out.
+    pub fn is_seen_from_back(&self) -> bool {
+        self.is_double_sided || self.is_glass()
+    }
+
+    fn is_glass(&self) -> bool {
+        match &self.surface {
             Surface::Phong(phong) => !phong.transmit.is_black(),
             Surface::MetallicRoughness(surface) => surface.transmission.factor > 0.0,
             Surface::Unlit(_) => false,
-        };
-        self.alpha_mode == AlphaMode::Opaque && !is_glass
+        }
+    }
+
+    /// Whether no light passes it anywhere: neither holes nor glass.
+    pub fn is_opaque(&self) -> bool {
+        self.alpha_mode == AlphaMode::Opaque && !self.is_glass()
     }
 
     /// A matte material of the given reflectance.

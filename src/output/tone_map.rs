@@ -10,8 +10,8 @@ const BRIGHTEST: f32 = 1e9;
 ///
 /// Negative values and those that are not numbers count as 0.
 pub fn tone_mapped(radiance: Rgb, tone_map: ToneMap) -> Rgb {
-    // `max` first: it turns what is not a number into 0.
-    let radiance = radiance.map(|c| c.max(0.0).min(BRIGHTEST));
+    // A comparison that is false for what is not a number, so that it becomes 0 as well.
+    let radiance = radiance.map(|c| if c > 0.0 { c.min(BRIGHTEST) } else { 0.0 });
     let shown = match tone_map {
         ToneMap::None => radiance,
         ToneMap::Aces => radiance.map(aces),
@@ -61,7 +61,7 @@ const MIDDLE_GREY: f32 = 0.18;
 const AGX_INSET: [[f32; 3]; 3] = [
     [0.842_479_06, 0.078_433_6, 0.079_223_745],
     [0.042_328_242, 0.878_468_64, 0.079_166_13],
-    [0.042_375_655, 0.078_433_6, 0.879_142_97],
+    [0.042_375_655, 0.078_433_6, 0.879_143],
 ];
 const AGX_OUTSET: [[f32; 3]; 3] = [
     [1.196_879, -0.098_020_88, -0.099_029_74],

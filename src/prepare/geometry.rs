@@ -21,7 +21,18 @@ pub struct TreeGeometry {
     pub indices: Vec<[u32; 3]>,
 }
 
-/// What the tracer's instances are.
+/// One instance of the tracer.
+#[derive(Debug)]
+pub struct Traced {
+    /// Which tree.
+    pub tree: u32,
+    /// The tree's triangles below this number let no light pass wherever they are hit.
+    pub opaque_triangles: u32,
+    /// What it is.
+    pub placing: Placing,
+}
+
+/// What an instance of the tracer is.
 #[derive(Debug)]
 pub enum Placing {
     /// A tree in prepared coordinates, made of many instances of the scene. Each part says which,
@@ -53,7 +64,7 @@ pub struct Geometry {
     /// Per tree: its triangles.
     pub trees: Vec<TreeGeometry>,
     /// Per instance of the tracer: its tree, and what it is.
-    pub placings: Vec<(u32, Placing)>,
+    pub traced: Vec<Traced>,
     /// Triangles that were dropped since a vertex is not a finite number.
     pub non_finite_triangles: u64,
 }
@@ -62,19 +73,27 @@ impl Geometry {
     /// Places and builds everything that `scene` holds.
     pub fn build(scene: &Scene, placement: &Placement, builder: Builder) -> Self {
         let instanced = instanced_meshes(scene);
-        let (shared, single): (Vec<_>, Vec<_>) = scene
+        let (shared, mut single): (Vec<_>, Vec<_>) = scene
             .instances
             .iter()
             .enumerate()
             .map(|(i, instance)| (i as u32, instance))
             .partition(|(_, instance)| instanced.binary_search(&instance.mesh).is_ok());
+        let is_opaque = |i: &Instance| scene.materials[i.material.0 as usize].is_opaque();
+        single.sort_by_key(|(_, instance)| !is_opaque(instance));
 
         let mut trees = Vec::new();
-        let mut placings = Vec::new();
+        let mut traced = Vec::new();
         if !single.is_empty() || shared.is_empty() {
             let (tree, parts) = flatten(scene, &single, placement);
+            let opaque = single.partition_point(|(_, instance)| is_opaque(instance));
+            let opaque = parts.get(opaque).map_or(u32::MAX, |p| p.first_triangle);
             trees.push(tree);
-            placings.push((0, Placing::Flattened(parts)));
+            traced.push(Traced {
+                tree: 0,
+                opaque_triangles: opaque,
+                placing: Placing::Flattened(parts),
+            });
         }
         let first_mesh_tree = trees.len() as u32;
         trees.extend(instanced.iter().map(|&id| {
@@ -87,11 +106,14 @@ impl Geometry {
         for (id, instance) in shared {
             let tree = instanced.partition_point(|&m| m < instance.mesh) as u32;
             let to_prepared = placement.after(&instance.transform);
-            let placing = Placing::Instanced {
-                instance: id,
-                to_prepared,
-            };
-            placings.push((first_mesh_tree + tree, placing));
+            traced.push(Traced {
+                tree: first_mesh_tree + tree,
+                opaque_triangles: if is_opaque(instance) { u32::MAX } else { 0 },
+                placing: Placing::Instanced {
+                    instance: id,
+                    to_prepared,
+                },
+            });
         }
 
         let non_finite_triangles = trees.iter_mut().map(drop_non_finite).sum();
@@ -99,11 +121,11 @@ impl Geometry {
             .par_iter()
             .map(|tree| Bvh::build(&tree.positions, &tree.indices, builder))
             .collect();
-        let tracer = Tracer::new(bvhs, &transforms(&placings));
+        let tracer = Tracer::new(bvhs, &transforms(&traced));
         Self {
             tracer,
             trees,
-            placings,
+            traced,
             non_finite_triangles,
         }
     }
@@ -119,12 +141,12 @@ impl Geometry {
     }
 }
 
-fn transforms(placings: &[(u32, Placing)]) -> Vec<(u32, DAffine3)> {
-    placings
+fn transforms(traced: &[Traced]) -> Vec<(u32, DAffine3)> {
+    traced
         .iter()
-        .map(|(tree, placing)| match placing {
-            Placing::Flattened(_) => (*tree, DAffine3::IDENTITY),
-            Placing::Instanced { to_prepared, .. } => (*tree, *to_prepared),
+        .map(|t| match t.placing {
+            Placing::Flattened(_) => (t.tree, DAffine3::IDENTITY),
+            Placing::Instanced { to_prepared, .. } => (t.tree, to_prepared),
         })
         .collect()
 }

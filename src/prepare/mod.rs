@@ -8,6 +8,9 @@ mod geometry;
 mod placement;
 mod surface;
 
+use std::cell::RefCell;
+use std::cmp::Ordering;
+
 use crate::bvh::{Builder, Hit};
 use crate::camera::Camera;
 use crate::import::{WarningCode, Warnings};
@@ -152,17 +155,42 @@ impl PreparedScene<'_> {
     /// Whether anything that no light passes is in the way of `ray`.
     pub fn is_blocked(&self, ray: &Ray) -> bool {
         if self.has_transparency {
-            self.geometry
-                .tracer
-                .any_hit_if(ray, |hit| self.is_opaque(hit))
+            let tracer = &self.geometry.tracer;
+            tracer.any_hit_if(ray, |hit| self.is_opaque(hit))
         } else {
             self.geometry.tracer.any_hit(ray)
         }
     }
 
-    /// Whether any material lets light pass.
-    pub fn has_transparency(&self) -> bool {
-        self.has_transparency
+    /// The surfaces that `ray` crosses and light may pass, from front to back; `None` where
+    /// something that no light passes is in the way.
+    pub fn crossings(&self, ray: &Ray) -> Option<Vec<Hit>> {
+        if !self.has_transparency {
+            return (!self.is_blocked(ray)).then(Vec::new);
+        }
+        let crossed = RefCell::new(Vec::new());
+        let is_blocked = self.geometry.tracer.any_hit_if(ray, |hit| {
+            let is_opaque = self.is_opaque(hit);
+            if !is_opaque {
+                crossed.borrow_mut().push(*hit);
+            }
+            is_opaque
+        });
+        if is_blocked {
+            return None;
+        }
+        let mut crossed = crossed.into_inner();
+        // The tree meets them in an order of its own, which must not show.
+        crossed.sort_by(|a, b| order(a).partial_cmp(&order(b)).unwrap_or(Ordering::Equal));
+        crossed.dedup_by(|next, kept| {
+            order(next) == order(kept) || self.is_same_crossing(ray, kept, next)
+        });
+        Some(crossed)
+    }
+
+    /// Whether no light passes the triangle that was hit, wherever it was hit.
+    fn is_opaque(&self, hit: &Hit) -> bool {
+        hit.triangle < self.geometry.traced[hit.instance as usize].opaque_triangles
     }
 
     /// Bytes of triangles, trees and tables, beyond what the scene itself holds.

@@ -2,7 +2,7 @@
 
 use crate::bvh::Hit;
 use crate::interaction::{Interaction, rounding_error};
-use crate::material::{Lookup, MAX_UV_SETS, Material, NormalMap};
+use crate::material::{Bsdf, Lookup, MAX_UV_SETS, Material, NormalMap};
 use crate::math::{DVec3, Frame, Mat3, Ray, UnitVec3, Vec2, Vec3, gamma};
 use crate::scene::{Instance, Mesh};
 use crate::texture::Encoding;
@@ -19,6 +19,29 @@ pub struct Surface<'a> {
     pub material: &'a Material,
     /// What the material reads there.
     pub lookup: Lookup<'a>,
+    /// How it scatters light there.
+    pub bsdf: Bsdf,
+}
+
+impl Surface<'_> {
+    /// Share of what is behind that stays hidden from who looks here, in `[0, 1]`.
+    pub fn visibility(&self) -> f32 {
+        if self.interaction.is_front || self.material.is_seen_from_back() {
+            self.material.opacity(&self.lookup)
+        } else {
+            0.0
+        }
+    }
+
+    /// Index of refraction of the side beyond over the index of the viewer's side.
+    pub fn relative_index(&self) -> f32 {
+        let specular = &self.bsdf.specular;
+        if self.interaction.is_front || specular.is_thin {
+            specular.index_of_refraction
+        } else {
+            1.0 / specular.index_of_refraction
+        }
+    }
 }
 
 /// A hit traced back to the scene's own triangle.
@@ -54,8 +77,8 @@ fn mix4(a: [f32; 4], wa: f32, b: [f32; 4], wb: f32, c: [f32; 4], wc: f32) -> [f3
 
 impl<'a> PreparedScene<'a> {
     fn locate(&self, hit: &Hit) -> Located<'a> {
-        let (_, placing) = &self.geometry.placings[hit.instance as usize];
-        let (instance_number, triangle) = match placing {
+        let traced = &self.geometry.traced[hit.instance as usize];
+        let (instance_number, triangle) = match &traced.placing {
             Placing::Flattened(parts) => {
                 let part = parts.partition_point(|p| p.first_triangle <= hit.triangle) - 1;
                 let part = parts[part];
@@ -96,11 +119,6 @@ impl<'a> PreparedScene<'a> {
         &self.scene.materials[at.instance.material.0 as usize]
     }
 
-    /// Whether no light passes the triangle that was hit, wherever it was hit.
-    pub fn is_opaque(&self, hit: &Hit) -> bool {
-        !self.has_transparency || self.material(&self.locate(hit)).is_opaque()
-    }
-
     /// Everything that shading reads at `hit` of `ray`.
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface<'a> {
         let at = self.locate(hit);
@@ -128,6 +146,7 @@ impl<'a> PreparedScene<'a> {
             None => smooth,
         };
         Surface {
+            bsdf: material.bsdf(&lookup),
             interaction: Interaction {
                 point,
                 point_error: self.point_error(hit, ray, point),
@@ -143,11 +162,11 @@ impl<'a> PreparedScene<'a> {
 
     /// The corners of the triangle that was hit, as traced, in prepared coordinates.
     pub(super) fn vertices(&self, hit: &Hit) -> [DVec3; 3] {
-        let (tree, placing) = &self.geometry.placings[hit.instance as usize];
-        let tree = &self.geometry.trees[*tree as usize];
+        let traced = &self.geometry.traced[hit.instance as usize];
+        let tree = &self.geometry.trees[traced.tree as usize];
         let corners = tree.indices[hit.triangle as usize];
         let corners = corners.map(|i| tree.positions[i as usize].as_dvec3());
-        match placing {
+        match &traced.placing {
             Placing::Flattened(_) => corners,
             Placing::Instanced { to_prepared, .. } => {
                 corners.map(|p| to_prepared.transform_point3(p))
@@ -158,7 +177,7 @@ impl<'a> PreparedScene<'a> {
     /// Where a triangle is traced as it is, its points are rounded once. A ray to an instance is
     /// rounded on its way into the instance's coordinates too, and so is all that starts there.
     fn point_error(&self, hit: &Hit, ray: &Ray, point: Vec3) -> Vec3 {
-        match &self.geometry.placings[hit.instance as usize].1 {
+        match &self.geometry.traced[hit.instance as usize].placing {
             Placing::Flattened(_) => rounding_error(point),
             Placing::Instanced { to_prepared, .. } => {
                 let forward = Mat3::from_cols_array(

@@ -65,14 +65,22 @@ fn permute(index: u32, count: u32, key: Key) -> u32 {
     let mask = u32::MAX >> (u32::BITS - bits);
     let words = key.bits();
     let (a, b) = (words as u32, (words >> 32) as u32);
-    let shift = bits.div_ceil(2);
+    let shift = (bits / 2).max(1);
+    // Four rounds: with three, some pairs of places are 20 % more likely than others.
+    let rounds = [
+        (a, b),
+        (b >> 9, a >> 7),
+        (a >> 19, b >> 17),
+        (a >> 13, b >> 5),
+    ];
     let mut x = index;
     loop {
         // Odd factors carry low bits up, shifts carry high bits down; each step is a bijection.
-        for (toggle, factor) in [(a, b), (b >> 9, a >> 7), (a >> 19, b >> 17)] {
+        for (toggle, factor) in rounds {
             x = (x ^ toggle) & mask;
             x = x.wrapping_mul(factor | 1) & mask;
             x ^= x >> shift;
+            x = x.wrapping_add(toggle >> 4) & mask;
         }
         if x < count {
             break;

@@ -7,6 +7,7 @@ mod cells;
 mod key;
 mod pattern;
 mod sampler;
+mod sobol;
 mod warp;
 
 pub use pattern::{Pattern, SamplingConfig, Target};

@@ -4,6 +4,7 @@ use crate::math::{ONE_MINUS_EPSILON, UVec2, Vec2};
 
 use super::cells::Cells;
 use super::key::Key;
+use super::sobol::{self, Pair};
 use super::warp::square_to_disk;
 use super::{Pattern, SamplingConfig, Target};
 
@@ -82,8 +83,7 @@ impl Sampler {
         }
         match (self.pattern, vertex, light) {
             (Pattern::Sobol, 1, 0) => {
-                let [_, _, u, v] = self.sobol(DimensionSet::CAMERA, u64::from(self.index));
-                Vec2::new(u, v)
+                self.sobol(DimensionSet::CAMERA, u64::from(self.index), Pair::Second)
             }
             _ => self.point(set),
         }
@@ -95,7 +95,7 @@ impl Sampler {
             Pattern::Grid => self.cells.point(self.key.with(set.0), self.index, false),
             Pattern::Jittered => self.cells.point(self.key.with(set.0), self.index, true),
             Pattern::Random => self.random(set, u64::from(self.index)),
-            Pattern::Sobol => self.sobol_2d(set, u64::from(self.index)),
+            Pattern::Sobol => self.sobol(set, u64::from(self.index), Pair::First),
         }
     }
 
@@ -108,7 +108,7 @@ impl Sampler {
             Pattern::Grid => Cells::at_least(count).point(key(), j, false),
             Pattern::Jittered => Cells::at_least(count).point(key(), j, true),
             Pattern::Random => self.random(set, number),
-            Pattern::Sobol => self.sobol_2d(set, number),
+            Pattern::Sobol => self.sobol(set, number, Pair::First),
         }
     }
 
@@ -116,19 +116,9 @@ impl Sampler {
         self.key.with(set.0).with(number).point()
     }
 
-    fn sobol_2d(&self, set: DimensionSet, number: u64) -> Vec2 {
-        let [u, v, _, _] = self.sobol(set, number);
-        Vec2::new(u, v)
-    }
-
-    /// Point `number` of an Owen-scrambled, shuffled Sobol sequence.
-    ///
-    /// The tables end at 2^16 points; there the next independent scramble begins, so that from
-    /// then on the error falls as that of independent batches.
-    fn sobol(&self, set: DimensionSet, number: u64) -> [f32; 4] {
-        const LENGTH_BITS: u32 = 16;
-        let seed = self.key.with(set.0).with(number >> LENGTH_BITS).bits() as u32;
-        let index = (number & ((1 << LENGTH_BITS) - 1)) as u32;
-        sobol_burley::sample_4d(index, 0, seed)
+    /// Point `number` of a Sobol sequence; past 2^32 the next independent one begins.
+    fn sobol(&self, set: DimensionSet, number: u64, pair: Pair) -> Vec2 {
+        let key = self.key.with(set.0).with(number >> 32);
+        sobol::point(number as u32, pair, key)
     }
 }

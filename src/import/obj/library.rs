@@ -10,8 +10,10 @@ use crate::material::Material;
 
 /// The materials of all libraries of one OBJ file.
 pub struct Libraries {
-    folder: PathBuf,
-    materials: Vec<(MtlMaterial, PathBuf)>,
+    /// Of the OBJ file, and then of each library.
+    folders: Vec<PathBuf>,
+    /// With the number of the folder of each one's library.
+    materials: Vec<(MtlMaterial, usize)>,
     by_name: HashMap<String, usize>,
 }
 
@@ -20,7 +22,7 @@ impl Libraries {
     /// a warning. Of materials of one name the first counts.
     pub fn read(names: &[String], folder: &Path, warnings: &mut Warnings) -> Self {
         let mut libraries = Self {
-            folder: folder.to_owned(),
+            folders: vec![folder.to_owned()],
             materials: Vec::new(),
             by_name: HashMap::new(),
         };
@@ -45,11 +47,13 @@ impl Libraries {
     }
 
     fn add(&mut self, materials: Vec<MtlMaterial>, path: &Path, warnings: &mut Warnings) {
-        let folder = path.parent().unwrap_or(Path::new(""));
+        let folder = self.folders.len();
+        self.folders
+            .push(path.parent().unwrap_or(Path::new("")).to_owned());
         for material in materials {
             let next = self.materials.len();
             if *self.by_name.entry(material.name.clone()).or_insert(next) == next {
-                self.materials.push((material, folder.to_owned()));
+                self.materials.push((material, folder));
             } else {
                 let message = format!(
                     "material {:?} is defined again; the first counts",
@@ -70,7 +74,8 @@ impl Libraries {
         match self.by_name.get(name) {
             Some(&index) => {
                 let (material, folder) = &self.materials[index];
-                mtl::material(material, &[folder, &self.folder], textures, warnings)
+                let folders: [&Path; 2] = [&self.folders[*folder], &self.folders[0]];
+                mtl::material(material, &folders, textures, warnings)
             }
             None => {
                 let message =

@@ -33,6 +33,7 @@ pub fn build(
         face: Vec::new(),
         flat_polygons: 0,
         crossed_polygons: 0,
+        infinite_vertices: 0,
     };
     let runs = runs_by_part(geometry);
     let meshes = geometry.parts.iter().zip(&runs);
@@ -48,6 +49,11 @@ pub fn build(
         WarningCode::BadFace,
         "polygons cross themselves, and their triangles overlap",
         builder.crossed_polygons,
+    );
+    warnings.add_many(
+        WarningCode::NonFiniteVertex,
+        "vertices are not finite numbers in single precision",
+        builder.infinite_vertices,
     );
     meshes
 }
@@ -70,6 +76,7 @@ struct Builder<'a> {
     face: Vec<u32>,
     flat_polygons: u64,
     crossed_polygons: u64,
+    infinite_vertices: u64,
 }
 
 impl Builder<'_> {
@@ -115,14 +122,16 @@ impl Builder<'_> {
     }
 
     fn mesh(
-        &self,
+        &mut self,
         name: &str,
         corners: &[Corner],
         triangles: Vec<[u32; 3]>,
     ) -> Result<Mesh, MeshError> {
         let geometry = self.geometry;
         let position = |corner: &Corner| self.anchor.local(at(&geometry.positions, corner.vertex));
-        let positions = corners.iter().map(position).collect();
+        let positions: Vec<Vec3> = corners.iter().map(position).collect();
+        let infinite = positions.iter().filter(|p| !p.is_finite()).count();
+        self.infinite_vertices += infinite as u64;
         let mut mesh = Mesh::new(name, positions, triangles)?;
         if corners.iter().any(|c| c.normal.is_some()) {
             let normal = |c: &Corner| c.normal.map_or(Vec3::ZERO, |n| at(&geometry.normals, n));

@@ -192,3 +192,29 @@ fn assign(geometry: &mut Geometry, face: usize, sums: &VertexSums, base: usize) 
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn angles_inside_a_concave_polygon_add_up() {
+        let l = [
+            [0.0, 0.0],
+            [3.0, 0.0],
+            [3.0, 1.0],
+            [1.0, 1.0],
+            [1.0, 3.0],
+            [0.0, 3.0],
+        ];
+        let ring = l.map(|[x, y]: [f64; 2]| DVec3::new(x, y, 7.0));
+        let normal = area_vector(&ring).normalize();
+        let angles: Vec<f64> = (0..6).map(|i| interior_angle(&ring, i, normal)).collect();
+        assert!(
+            (angles.iter().sum::<f64>() - 4.0 * PI).abs() < 1e-12,
+            "{angles:?}"
+        );
+        assert!((angles[3] - 1.5 * PI).abs() < 1e-12, "{angles:?}");
+    }
+}

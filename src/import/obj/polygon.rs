@@ -4,9 +4,10 @@ use earcut::Earcut;
 
 use crate::math::DVec3;
 
-/// Polygons with more corners than this are fanned: clipping the ears of one that crosses itself
-/// takes time that grows with the square of their number.
-const MOST_CLIPPED: usize = 20_000;
+/// Clipping the ears of a polygon that crosses itself takes time that grows with the square of
+/// its corners. This many corners squared, a few seconds, may be spent so on one file; what is
+/// beyond is fanned.
+const MOST_WASTED: u64 = 1 << 30;
 
 /// What came out of a polygon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,6 +26,8 @@ pub struct Triangulator {
     flat: Vec<[f64; 2]>,
     cut: Vec<u32>,
     triangles: Vec<[u32; 3]>,
+    /// Sum of the squared numbers of corners of polygons that crossed themselves.
+    wasted: u64,
 }
 
 /// Twice the area of the polygon `ring` times its normal (Newell's sum), taken from its first
@@ -44,6 +47,7 @@ impl Triangulator {
             flat: Vec::new(),
             cut: Vec::new(),
             triangles: Vec::new(),
+            wasted: 0,
         }
     }
 
@@ -51,10 +55,10 @@ impl Triangulator {
     /// triangles that turn the way it does. They hold numbers of its corners.
     pub fn cut(&mut self, ring: &[DVec3]) -> (&[[u32; 3]], Outcome) {
         self.triangles.clear();
-        let outcome = match ring.len() {
-            3 => triangle(ring, &mut self.triangles),
-            4 => quad(ring, &mut self.triangles),
-            _ => self.ears(ring),
+        let outcome = if ring.len() == 4 {
+            quad(ring, &mut self.triangles)
+        } else {
+            self.ears(ring)
         };
         if self.triangles.len() + 2 != ring.len() {
             self.triangles.clear();
@@ -69,7 +73,8 @@ impl Triangulator {
         let Some(normal) = area.try_normalize().filter(|_| has_area(ring, area)) else {
             return Outcome::NoArea;
         };
-        if ring.len() > MOST_CLIPPED {
+        let steps = (ring.len() as u64).saturating_pow(2);
+        if self.wasted.saturating_add(steps) > MOST_WASTED {
             return Outcome::Overlapping;
         }
         let (u, v) = normal.any_orthonormal_pair();
@@ -84,6 +89,9 @@ impl Triangulator {
         if self.covers_once(area.length()) {
             Outcome::Covered
         } else {
+            // A fan at least keeps the border; what was clipped may have lost parts of it.
+            self.triangles.clear();
+            self.wasted += steps;
             Outcome::Overlapping
         }
     }
@@ -123,15 +131,6 @@ fn has_area(ring: &[DVec3], area: DVec3) -> bool {
         .map(|pair| (pair[0] - first).length() * (pair[1] - first).length())
         .sum();
     area.length() > ROUNDING * sum
-}
-
-fn triangle(ring: &[DVec3], triangles: &mut Vec<[u32; 3]>) -> Outcome {
-    triangles.push([0, 1, 2]);
-    if has_area(ring, area_vector(ring)) {
-        Outcome::Covered
-    } else {
-        Outcome::NoArea
-    }
 }
 
 /// Cuts along the diagonal that leaves both halves turning as the whole does: the first where

@@ -109,11 +109,12 @@ impl Reader {
             }
             count += 1;
         }
-        let color = (count >= 3).then(|| [surplus[0], surplus[1], surplus[2]]);
-        if count > 3 || count == 2 {
+        let [r, g, b, _] = surplus.map(|v| v as f32);
+        let color = Some([r, g, b]).filter(|c| count >= 3 && c.iter().all(|v| v.is_finite()));
+        if count == 2 || count > 3 || (count == 3 && color.is_none()) {
             self.skipped.surplus_numbers += 1;
         }
-        self.color(color.map(|c| c.map(|v| v as f32)));
+        self.color(color);
         self.geometry.positions.push(DVec3::from_array(position));
         Ok(())
     }
@@ -156,7 +157,7 @@ impl Reader {
             Some(word) => std::str::from_utf8(word)
                 .ok()
                 .and_then(|w| w.parse().ok())
-                .ok_or_else(|| format!("{:?} is not a smoothing group", shown(word)))?,
+                .ok_or_else(|| format!("\"{}\" is not a smoothing group", shown(word)))?,
         };
         Ok(())
     }
@@ -223,7 +224,7 @@ impl Reader {
         let is_word = |b: &u8| b.is_ascii_alphanumeric() || b"_-.:".contains(b);
         if !keyword.iter().all(is_word) {
             return Err(format!(
-                "{:?} is not a statement of an OBJ file",
+                "\"{}\" is not a statement of an OBJ file",
                 shown(keyword)
             ));
         }

@@ -10,6 +10,7 @@ use super::model::Models;
 use super::nearest::suggestion;
 use super::section::Section;
 use super::{light, material, settings};
+use crate::color::Rgb;
 use crate::import::{ImportError, ImportOptions, Imported, Warnings};
 use crate::scene::{Scene, Settings};
 
@@ -37,8 +38,9 @@ pub fn build(
     let mut scene = scene(&root, options, &mut warnings)?;
     let view = place_camera(&mut scene, camera, &settings, &source.path, options)?;
     let lights = light_up(&mut scene, &root);
+    let ambient = surround(&mut scene, &root, &lights);
     Ok(Imported {
-        defaults: defaults::report(view.as_ref(), &lights),
+        defaults: defaults::report(view.as_ref(), ambient, &lights),
         scene,
         settings,
         warnings,
@@ -147,4 +149,14 @@ fn light_up(scene: &mut Scene, root: &Section) -> Vec<RigLight> {
     let rig = defaults::lights(&camera.item);
     scene.lights.extend(rig.iter().filter_map(RigLight::light));
     Vec::from(rig)
+}
+
+/// Gives a scene with default lights the default ambient light too, if it has no `[background]`;
+/// returns it, if it was added.
+fn surround(scene: &mut Scene, root: &Section, lights: &[RigLight]) -> Option<Rgb> {
+    if lights.is_empty() || root.value("background").is_some() {
+        return None;
+    }
+    scene.background.ambient = defaults::AMBIENT;
+    Some(defaults::AMBIENT)
 }

@@ -37,6 +37,10 @@ pub struct RigLight {
     pub angle: f64,
 }
 
+/// What stands in for the light of the surroundings beside the default lights: without it rough
+/// metal, which has nothing to mirror, is black but for its highlights.
+pub const AMBIENT: Rgb = Rgb::splat(0.15);
+
 /// Room around the scene, as a factor of the camera's distance.
 const MARGIN: f64 = 1.08;
 
@@ -122,8 +126,9 @@ impl RigLight {
 }
 
 /// What was added, in the words of a scene file; `None` where nothing was.
-pub fn report(view: Option<&View>, lights: &[RigLight]) -> Option<Defaults> {
+pub fn report(view: Option<&View>, ambient: Option<Rgb>, lights: &[RigLight]) -> Option<Defaults> {
     let mut parts: Vec<String> = view.map(print::view).into_iter().collect();
+    parts.extend(ambient.map(print::ambient));
     parts.extend(lights.iter().map(print::rig_light));
     (!parts.is_empty()).then(|| Defaults {
         text: parts.join("\n"),

@@ -51,7 +51,7 @@
 //! | key | range | default | |
 //! |---|---|---|---|
 //! | `radiance` | colour ≥ 0 | black | what rays that leave the scene bring back, W/(m² sr) |
-//! | `ambient` | colour ≥ 0 | black | irradiance / π added to every matte surface (`whitted`) |
+//! | `ambient` | colour ≥ 0 | black; with default lights 0.15 | irradiance / π added to every matte surface (`whitted`) |
 //!
 //! # `[[model]]`
 //!
@@ -65,8 +65,8 @@
 //! | `material` | name of a `[[material]]` | | replaces every material of the model |
 //! | `lights` | true, false | true | whether the model brings its lights |
 //!
-//! Lights and cameras are placed with their model. A light shines on the scaled model as it did
-//! before: its intensity grows with the square of the scale.
+//! Lights and cameras are placed with their model. A light is as bright on the scaled model as it was
+//! on the model by itself, which stands nearer or farther.
 //!
 //! # `[[material]]`
 //!
@@ -82,7 +82,8 @@
 //! | `index_of_refraction` | > 0 | 1.5 | of the inside against the outside |
 //! | `emission` | colour ≥ 0 | black | radiance that it gives off, W/(m² sr) |
 //!
-//! The first four shares should add up to no more than 1; where they do, there is no warning.
+//! The four shares `diffuse`, `specular`, `reflect` and `transmit` should add up to no more than 1;
+//! where they add up to more there is a warning.
 //!
 //! Of `kind = "gltf"` (the metallic-roughness model; defaults are glTF's):
 //!

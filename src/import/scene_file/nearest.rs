@@ -11,7 +11,7 @@ pub fn suggestion(word: &str, known: &[&str]) -> String {
     match nearest {
         None => "there are none".to_owned(),
         // A third of the letters may be wrong; beyond that it is another word.
-        Some((distance, other)) if distance <= (word.chars().count() / 3).max(2) => {
+        Some((distance, other)) if distance <= word.chars().count().div_ceil(3).max(2) => {
             format!("did you mean \"{other}\"?")
         }
         Some(_) => format!("known: {}", known.join(", ")),
@@ -28,7 +28,7 @@ mod tests {
         assert_eq!(suggestion("raduis", &known), "did you mean \"radius\"?");
         assert_eq!(suggestion("Radiance", &known), "did you mean \"radiance\"?");
         assert_eq!(
-            suggestion("temperature", &known),
+            suggestion("brightness", &known),
             "known: radius, radiance, position"
         );
         assert_eq!(suggestion("x", &[]), "there are none");

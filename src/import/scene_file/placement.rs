@@ -94,7 +94,7 @@ impl Placement {
     }
 
     /// A light of the model, in the world. It lights the placed model as it lit the model by
-    /// itself: intensities grow with the square of the scale.
+    /// itself, at whatever scale.
     pub fn light(&self, light: &Placed<Light>) -> Placed<Light> {
         if self.transform == DAffine3::IDENTITY {
             return light.clone();

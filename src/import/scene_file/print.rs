@@ -7,25 +7,32 @@ use std::fmt::Write;
 use super::camera::View;
 use super::defaults::RigLight;
 use super::settings::{INTEGRATORS, PATTERNS, TARGETS};
+use crate::color::Rgb;
 use crate::math::DVec3;
 use crate::scene::Settings;
 
 /// `settings` as `[film]`, `[sampling]` and `[integrator]` of a scene file, every key written out.
+///
+/// `light_samples`, an option of the command line that no key stands for, becomes a comment.
 pub fn settings(settings: &Settings) -> String {
     let sampling = &settings.sampling;
-    format!(
-        "[film]\nsize = [{}, {}]\n\n\
+    let light_samples = settings.light_samples.map_or_else(String::new, |samples| {
+        format!("# every light: samples = {samples}\n")
+    });
+    light_samples
+        + &format!(
+            "[film]\nsize = [{}, {}]\n\n\
          [sampling]\nsamples = {}\npattern = \"{}\"\ntarget = \"{}\"\nseed = {}\n\n\
          [integrator]\nkind = \"{}\"\nmax_depth = {}\n",
-        settings.size.x,
-        settings.size.y,
-        sampling.samples,
-        name_of(PATTERNS, sampling.pattern),
-        name_of(TARGETS, sampling.target),
-        sampling.seed,
-        name_of(INTEGRATORS, settings.integrator),
-        settings.max_depth,
-    )
+            settings.size.x,
+            settings.size.y,
+            sampling.samples,
+            name_of(PATTERNS, sampling.pattern),
+            name_of(TARGETS, sampling.target),
+            sampling.seed,
+            name_of(INTEGRATORS, settings.integrator),
+            settings.max_depth,
+        )
 }
 
 /// `[camera]`.
@@ -45,6 +52,11 @@ pub fn view(view: &View) -> String {
         let _ = writeln!(text, "focus_distance = {distance:?}");
     }
     text
+}
+
+/// `[background]` with nothing but ambient light.
+pub fn ambient(Rgb { r, g, b }: Rgb) -> String {
+    format!("[background]\nambient = [{r:?}, {g:?}, {b:?}]\n")
 }
 
 /// `[[light]]`.

@@ -1,5 +1,7 @@
 //! The statements of an MTL file, as they stand.
 
+use std::collections::BTreeSet;
+
 use super::super::lines::{Line, Lines, Words, number, shown};
 use super::map::Map;
 use crate::color::Rgb;
@@ -61,23 +63,23 @@ impl Opacity {
 #[derive(Clone, Debug, Default)]
 pub struct Maps {
     /// `map_Kd`.
-    pub diffuse: Option<Map>,
+    pub diffuse: Option<Box<Map>>,
     /// `map_Ks`.
-    pub specular: Option<Map>,
+    pub specular: Option<Box<Map>>,
     /// `map_Ke`.
-    pub emission: Option<Map>,
+    pub emission: Option<Box<Map>>,
     /// `map_Ns`.
-    pub exponent: Option<Map>,
+    pub exponent: Option<Box<Map>>,
     /// `map_d`.
-    pub opacity: Option<Map>,
+    pub opacity: Option<Box<Map>>,
     /// `map_Bump`, `bump`: heights.
-    pub bump: Option<Map>,
+    pub bump: Option<Box<Map>>,
     /// `norm`, `map_Kn`: normals.
-    pub normal: Option<Map>,
+    pub normal: Option<Box<Map>>,
     /// `map_Pr`.
-    pub roughness: Option<Map>,
+    pub roughness: Option<Box<Map>>,
     /// `map_Pm`.
-    pub metallic: Option<Map>,
+    pub metallic: Option<Box<Map>>,
 }
 
 /// Reads a whole library called `file` in messages. What is wrong in it costs no more than the
@@ -87,6 +89,7 @@ pub fn read(bytes: &[u8], file: &str, warnings: &mut Warnings) -> Vec<MtlMateria
         file,
         materials: Vec::new(),
         warnings,
+        said: BTreeSet::new(),
     };
     for line in Lines::new(bytes) {
         reader.statement(&line);
@@ -98,6 +101,8 @@ struct Reader<'a> {
     file: &'a str,
     materials: Vec<MtlMaterial>,
     warnings: &'a mut Warnings,
+    /// Complaints so far.
+    said: BTreeSet<String>,
 }
 
 impl Reader<'_> {
@@ -113,45 +118,47 @@ impl Reader<'_> {
             return;
         }
         let Some(mut material) = self.materials.pop() else {
-            self.warn(
-                WarningCode::UnknownStatement,
-                line,
-                "stands before any newmtl",
-                keyword,
-            );
+            let what = "statements before the first newmtl were left out".to_owned();
+            self.complain(WarningCode::UnknownStatement, None, what);
             return;
         };
         let mut numbers = Words::of_numbers(&line.text);
         numbers.next();
-        let known = material
+        let taken = material
             .value(&key, &mut numbers)
             .or_else(|| material.map(&key, names.rest()));
         self.materials.push(material);
-        match known {
+        let keyword = shown(keyword);
+        match taken {
             Some(Ok(())) => {}
             Some(Err(Unfit::Bad)) => {
-                self.warn(
-                    WarningCode::BadValue,
-                    line,
-                    "has no value that can be used",
-                    keyword,
+                let what = format!("`{keyword}` has no value that can be used");
+                self.complain(WarningCode::BadValue, Some(line.number), what);
+            }
+            Some(Err(Unfit::NotShown)) => {
+                self.complain(
+                    WarningCode::Approximated,
+                    None,
+                    format!("`{keyword}` is not shown"),
                 );
             }
-            Some(Err(Unfit::NotShown)) => self.warnings.add(
-                WarningCode::Approximated,
-                format!("{}: `{}` is not shown", self.file, shown(keyword)),
-            ),
-            None => self.warnings.add(
-                WarningCode::UnknownStatement,
-                format!("{}: `{}` was not understood", self.file, shown(keyword)),
-            ),
+            None => {
+                let what = format!("`{keyword}` was not understood");
+                self.complain(WarningCode::UnknownStatement, None, what);
+            }
         }
     }
 
-    fn warn(&mut self, code: WarningCode, line: &Line<'_>, what: &str, keyword: &[u8]) {
-        let (file, number, keyword) = (self.file, line.number, shown(keyword));
-        self.warnings
-            .add(code, format!("{file}, line {number}: `{keyword}` {what}"));
+    /// Adds a warning; beyond a number that anyone reads, one without details.
+    fn complain(&mut self, code: WarningCode, line: Option<usize>, what: String) {
+        const MOST: usize = 50;
+        let place = line.map_or(String::new(), |line| format!(", line {line}"));
+        let mut message = format!("{}{place}: {what}", self.file);
+        if self.said.len() >= MOST && !self.said.contains(&message) {
+            message = format!("{}: further statements of this kind", self.file);
+        }
+        self.said.insert(message.clone());
+        self.warnings.add(code, message);
     }
 }
 
@@ -240,7 +247,7 @@ impl MtlMaterial {
             _ => return None,
         };
         let is_physical = matches!(key, b"map_pr" | b"map_pm");
-        let taken = set(slot, Map::parse(text));
+        let taken = set(slot, Map::parse(text).map(Box::new));
         self.is_physically_based |= is_physical && taken.is_ok();
         Some(taken)
     }

@@ -132,14 +132,14 @@ struct Lookup<'a> {
 }
 
 impl Lookup<'_> {
-    fn texture(&mut self, map: &Option<Map>) -> Option<TextureRef> {
+    fn texture(&mut self, map: &Option<Box<Map>>) -> Option<TextureRef> {
         self.textures
             .get(map.as_ref()?, self.folders, self.warnings)
     }
 
     /// A factor with its map. A map without a factor is shown as it is; without both there is
     /// `default`.
-    fn color(&mut self, factor: Option<Rgb>, map: &Option<Map>, default: Rgb) -> TexturedRgb {
+    fn color(&mut self, factor: Option<Rgb>, map: &Option<Box<Map>>, default: Rgb) -> TexturedRgb {
         let texture = self.texture(map);
         let alone = if texture.is_some() {
             Rgb::WHITE
@@ -153,7 +153,12 @@ impl Lookup<'_> {
     }
 
     /// As [`Lookup::color`], for a number.
-    fn scalar(&mut self, factor: Option<f32>, map: &Option<Map>, default: f32) -> TexturedScalar {
+    fn scalar(
+        &mut self,
+        factor: Option<f32>,
+        map: &Option<Box<Map>>,
+        default: f32,
+    ) -> TexturedScalar {
         let texture = self.texture(map);
         let alone = if texture.is_some() { 1.0 } else { default };
         TexturedScalar {

@@ -1,0 +1,11 @@
+//! Scene files: what they mean, what their mistakes say, and what scenes get that lack a camera or
+//! lights.
+
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+mod defaults;
+mod files;
+mod meaning;
+mod mistakes;
+mod models;
+mod overrides;
