@@ -224,6 +224,69 @@ fn random_changes_of_real_files_do_no_harm() {
     }
 }
 
+/// All numbers of a document.
+fn numbers<'a>(value: &'a mut Value, found: &mut Vec<&'a mut Value>) {
+    match value {
+        Value::Number(_) => found.push(value),
+        Value::Array(list) => list.iter_mut().for_each(|entry| numbers(entry, found)),
+        Value::Object(map) => map.values_mut().for_each(|entry| numbers(entry, found)),
+        _ => {}
+    }
+}
+
+#[test]
+fn wrong_numbers_in_real_documents_do_no_harm() {
+    let Some(models) = models() else { return };
+    let wrong = [
+        json!(0),
+        json!(1),
+        json!(2),
+        json!(3),
+        json!(5),
+        json!(5121),
+        json!(5125),
+        json!(255),
+        json!(65_535),
+        json!(1_000_000),
+        json!(u32::MAX),
+        json!(u64::MAX),
+        json!(-1),
+        json!(1e300),
+        json!(1e-300),
+        json!(0.5),
+    ];
+    for name in [
+        "BoxInterleaved",
+        "BoxTextured",
+        "Cameras",
+        "MeshPrimitiveModes",
+        "MultipleScenes",
+        "SimpleMorph",
+        "SimpleSkin",
+        "SimpleSparseAccessor",
+    ] {
+        let path = models.join(format!("gltf/{name}/glTF-Embedded/{name}.gltf"));
+        let document: Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
+        for round in 0..400 {
+            let mut random = SplitMix(round);
+            let mut damaged = document.clone();
+            let mut found = Vec::new();
+            numbers(&mut damaged, &mut found);
+            for _ in 0..=random.below(3) {
+                let at = random.below(found.len());
+                *found[at] = wrong[random.below(wrong.len())].clone();
+            }
+            let start = Instant::now();
+            let _ = import_bytes("damaged.gltf", damaged.to_string().as_bytes());
+            let elapsed = start.elapsed();
+            assert!(
+                elapsed < Duration::from_secs(20),
+                "{name} {round}: {elapsed:?}"
+            );
+        }
+    }
+}
+
 #[test]
 fn the_number_of_threads_changes_nothing() {
     let Some(models) = models() else { return };

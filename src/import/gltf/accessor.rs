@@ -20,9 +20,10 @@ pub struct AccessorReader<'a> {
 }
 
 /// Which elements of an accessor are wanted.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub enum Selection {
     /// All of them.
+    #[default]
     All,
     /// These, in rising order.
     Only(Vec<u32>),

@@ -8,11 +8,15 @@ use std::cell::Cell;
 
 use crate::import::Problem;
 
-/// What every file may use, however small it is.
-const FLOOR_BYTES: u64 = 256 << 20;
+/// What the geometry of every file may use, however small it is.
+const GEOMETRY_FLOOR_BYTES: u64 = 64 << 20;
 
-/// What a file may use per byte of its own, beyond [`FLOOR_BYTES`]. Single-byte components
-/// grow to sixteen times their size as `f32`s with padding; the rest is for sharing.
+/// What the pixels of every file may use: eight images of one colour, 4096 pixels square, which
+/// are common and have next to no bytes.
+const PIXELS_FLOOR_BYTES: u64 = 8 * 4096 * 4096 * 4;
+
+/// What a file may use per byte of its own, beyond the floor. Single-byte components grow to
+/// sixteen times their size as `f32`s with padding; the rest is for sharing.
 const FACTOR: u64 = 64;
 
 /// Zeros that an accessor without data may stand for, beyond the same factor.
@@ -26,11 +30,20 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// For a file that has, with those beside it, `file_bytes` bytes.
-    pub fn for_file_of(file_bytes: u64) -> Self {
+    /// For all but the images of a document that has, with its buffers, `file_bytes` bytes.
+    pub fn for_geometry(file_bytes: u64) -> Self {
+        Self::new(GEOMETRY_FLOOR_BYTES, file_bytes)
+    }
+
+    /// For the pixels of images that have `file_bytes` bytes together.
+    pub fn for_pixels(file_bytes: u64) -> Self {
+        Self::new(PIXELS_FLOOR_BYTES, file_bytes)
+    }
+
+    fn new(floor: u64, file_bytes: u64) -> Self {
         Self {
             file_bytes,
-            left: Cell::new(FLOOR_BYTES.saturating_add(FACTOR.saturating_mul(file_bytes))),
+            left: Cell::new(floor.saturating_add(FACTOR.saturating_mul(file_bytes))),
         }
     }
 

@@ -49,29 +49,37 @@ fn split_binary(file: &[u8]) -> Result<Container<'_>, Problem> {
     let body = file
         .get(HEADER_BYTES..length as usize)
         .ok_or_else(|| Problem::Invalid("the header's length is less than the header".into()))?;
-    let (kind, json, rest) = chunk(body)?;
-    if kind != JSON_CHUNK {
+    let (first, rest) = chunk(body)?;
+    if first.kind != JSON_CHUNK {
         return Err(Problem::Invalid("the first chunk is not JSON".into()));
     }
-    let binary = if rest.is_empty() {
-        None
-    } else {
-        let (kind, bytes, _) = chunk(rest)?;
+    let mut binary = None;
+    if !rest.is_empty() {
+        let (second, _) = chunk(rest)?;
         // Chunks of other kinds are for extensions, and to be passed over.
-        (kind == BINARY_CHUNK).then_some(bytes)
-    };
-    Ok(Container { json, binary })
+        binary = (second.kind == BINARY_CHUNK).then_some(second.content);
+    }
+    Ok(Container {
+        json: first.content,
+        binary,
+    })
 }
 
-/// Type and content of the first chunk, and what comes after it.
-fn chunk(bytes: &[u8]) -> Result<(&[u8], &[u8], &[u8]), Problem> {
+struct Chunk<'a> {
+    kind: &'a [u8],
+    content: &'a [u8],
+}
+
+/// The first chunk, and what comes after it.
+fn chunk(bytes: &[u8]) -> Result<(Chunk<'_>, &[u8]), Problem> {
     let problem = || Problem::Invalid("a chunk is cut short".into());
     let length = number(bytes, 0).ok_or_else(problem)? as usize;
     let (header, rest) = bytes
         .split_at_checked(CHUNK_HEADER_BYTES)
         .ok_or_else(problem)?;
     let (content, rest) = rest.split_at_checked(length).ok_or_else(problem)?;
-    Ok((&header[4..], content, rest))
+    let kind = &header[4..];
+    Ok((Chunk { kind, content }, rest))
 }
 
 fn number(bytes: &[u8], offset: usize) -> Option<u32> {

@@ -8,7 +8,7 @@ use crate::math::{Vec2, Vec3};
 use crate::scene::{Mesh, MeshError};
 
 /// Sets of texture coordinates that are kept.
-const MAX_UV_SETS: usize = 4;
+pub const MAX_UV_SETS: usize = 4;
 
 /// What defines the shape of a primitive, and nothing else: primitives that agree in this share
 /// one mesh.
@@ -28,7 +28,7 @@ pub struct Shape<'a> {
 #[derive(Debug, Default)]
 pub struct Geometry {
     /// Which vertices of the accessors these are.
-    pub selection: Option<Selection>,
+    pub selection: Selection,
     /// Vertices that the accessors have.
     pub stored_vertices: usize,
     pub positions: Vec<Vec3>,
@@ -83,7 +83,7 @@ impl GeometryReader<'_, '_> {
         }
         geometry.colors = self.colors(attributes, vertices, &selection, warnings);
         geometry.uv_sets = self.uv_sets(attributes, vertices, &selection, warnings);
-        geometry.selection = Some(selection);
+        geometry.selection = selection;
         Ok(Some(geometry))
     }
 
@@ -153,7 +153,7 @@ impl GeometryReader<'_, '_> {
                 (0..vertices as u32).collect()
             }
         };
-        if shape.mode == Mode::Triangles && corners.len() % 3 != 0 {
+        if shape.mode == Mode::Triangles && !corners.len().is_multiple_of(3) {
             let message = format!(
                 "{}: its last triangle has only {} corners",
                 self.place,
@@ -187,8 +187,11 @@ impl GeometryReader<'_, '_> {
         };
         let mut colors: Vec<[f32; 4]> = colors.unwrap_or_default();
         for channel in colors.as_flattened_mut() {
-            // Unlike `clamp`, this also makes a number of NaN.
-            *channel = channel.max(0.0).min(1.0);
+            *channel = if channel.is_nan() {
+                0.0
+            } else {
+                channel.clamp(0.0, 1.0)
+            };
         }
         colors
     }

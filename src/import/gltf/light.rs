@@ -7,7 +7,7 @@ use super::extensions::LIGHTS;
 use crate::color::Rgb;
 use crate::import::{WarningCode, Warnings};
 use crate::light::{DistantLight, Falloff, Light, PointLight, SpotLight};
-use crate::math::{DAffine3, DVec3, UnitVec3, Vec3};
+use crate::math::{DAffine3, UnitVec3, Vec3};
 use crate::scene::Placed;
 
 /// The extension's object in the root.
@@ -141,8 +141,7 @@ fn light(
     if !color.is_finite() || color.channels().into_iter().any(|channel| channel < 0.0) {
         return Err("has a colour or intensity below 0, or not finite".into());
     }
-    let direction =
-        UnitVec3::normalize((-world.matrix3.z_axis).normalize_or(DVec3::ZERO).as_vec3());
+    let direction = UnitVec3::normalize((-world.matrix3.z_axis).normalize_or_zero().as_vec3());
     let direction = direction.ok_or("has no direction");
     let falloff = Falloff {
         range: range(entry.range, place, warnings),

@@ -6,15 +6,13 @@ use super::document_material::{
     Transmission, Volume,
 };
 use super::extensions::TEXTURE_TRANSFORM;
+use super::geometry::MAX_UV_SETS;
 use super::texture::Textures;
 use crate::color::Rgb;
 use crate::import::{WarningCode, Warnings};
 use crate::material::{AlphaMode, Material, MetallicRoughness, NormalMap, Surface};
 use crate::math::{Affine2, Vec2};
 use crate::texture::{TextureRef, TexturedRgb, TexturedScalar};
-
-/// Sets of texture coordinates that meshes keep.
-const MAX_UV_SETS: u32 = 4;
 
 /// Channels of textures.
 const RED: u8 = 0;
@@ -238,7 +236,7 @@ impl MaterialReader<'_> {
         let change: Option<TextureTransform> = self.optional(&info.extensions, TEXTURE_TRANSFORM);
         let change = change.unwrap_or_default();
         let set = change.tex_coord.unwrap_or(info.tex_coord);
-        if set >= MAX_UV_SETS {
+        if set as usize >= MAX_UV_SETS {
             self.warn(&format!(
                 "one of its textures uses TEXCOORD_{set}, of which only {MAX_UV_SETS} are kept; it is left out"
             ));

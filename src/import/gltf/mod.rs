@@ -73,7 +73,7 @@ fn read(
     extensions::check(&document, path, options, warnings)?;
     let buffers = Buffers::read(path, &document, binary)?;
     // The binary part of a .glb counts twice, which does no harm to a bound.
-    let budget = Budget::for_file_of(file.len() as u64 + buffers.len());
+    let budget = Budget::for_geometry(file.len() as u64 + buffers.len());
     let accessors = AccessorReader {
         document: &document,
         buffers: &buffers,

@@ -1,6 +1,5 @@
 //! Morph targets at their default weights.
 
-use super::accessor::Selection;
 use super::document::Attributes;
 use super::geometry::{Geometry, GeometryReader};
 use crate::import::Warnings;
@@ -24,7 +23,7 @@ pub fn apply(
     weights: &[f32],
     warnings: &mut Warnings,
 ) {
-    let selection = geometry.selection.clone().unwrap_or(Selection::All);
+    let selection = geometry.selection.clone();
     let vertices = geometry.stored_vertices;
     let mut deltas = |name: &str| -> Vec<(f64, Vec<[f32; 3]>)> {
         active(targets, weights)

@@ -153,7 +153,7 @@ fn influences(
     attributes: &Attributes,
     warnings: &mut Warnings,
 ) -> Vec<Influences> {
-    let selection = geometry.selection.clone().unwrap_or(Selection::All);
+    let selection = geometry.selection.clone();
     let vertices = geometry.stored_vertices;
     let mut sets = Vec::new();
     loop {

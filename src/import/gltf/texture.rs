@@ -107,7 +107,7 @@ fn within_budget<'a>(
     encoded: Vec<Encoded<'a>>,
 ) -> Vec<Encoded<'a>> {
     let file_bytes = |bytes: &Encoded| bytes.as_ref().map_or(0, |bytes| bytes.len() as u64);
-    let budget = Budget::for_file_of(encoded.iter().map(file_bytes).sum());
+    let budget = Budget::for_pixels(encoded.iter().map(file_bytes).sum());
     let check = |(&index, bytes): (&usize, Encoded<'a>)| {
         let bytes = bytes?;
         let name = image_name(index, &document.images[index]);
