@@ -1,0 +1,257 @@
+//! The traversal loop: one for every width, for closest and any hit, for trees and forests.
+//!
+//! Children are visited nearest first; those left behind wait on a stack with their distance
+//! and are dropped when a hit nearer than that has been found meanwhile.
+
+use super::caster::{Caster, FAR_PAD, Window};
+use super::count::Counter;
+use super::hit::{Hit, Search, key};
+use super::layout::{Block, ChildRef, Node};
+use super::simd::{Lanes, Stack};
+use crate::math::UNIT_ROUNDOFF;
+
+/// Whether the search goes on after a leaf.
+pub(super) enum Next {
+    /// With the window that is left.
+    GoOn(Window),
+    /// It is over.
+    Stop,
+}
+
+/// A ray's constants for the box test, in vectors.
+struct BoxTest<S> {
+    inverse: [S; 3],
+    near_offset: [S; 3],
+    far_offset: [S; 3],
+    near_side: [usize; 3],
+}
+
+impl<S> BoxTest<S> {
+    #[inline(always)]
+    fn new<const W: usize>(ray: &Caster) -> Self
+    where
+        S: Lanes<W>,
+    {
+        Self {
+            inverse: ray.inverse.map(S::splat),
+            near_offset: ray.near_offset.map(S::splat),
+            far_offset: ray.far_offset.map(S::splat),
+            near_side: ray.near_side,
+        }
+    }
+
+    /// Which children the ray may meet within `near` to `far`, and where it enters them.
+    #[inline(always)]
+    fn test<const W: usize>(&self, node: &Node<W>, near: S, far: S) -> (u32, S)
+    where
+        S: Lanes<W>,
+    {
+        let (mut enter, mut leave) = (near, far);
+        for axis in 0..3 {
+            let side = self.near_side[axis];
+            let near = S::load(&node.planes[side][axis]);
+            let far = S::load(&node.planes[1 - side][axis]);
+            let near = near.mul_sub(self.inverse[axis], self.near_offset[axis]);
+            let far = far.mul_sub(self.inverse[axis], self.far_offset[axis]);
+            enter = near.max(enter);
+            leave = far.min(leave);
+        }
+        (enter.le(leave.mul(S::splat(FAR_PAD))), enter)
+    }
+}
+
+/// Walks from the first of `nodes` to the leaves that may hold a better hit, nearest first.
+///
+/// `leaf` looks at one and says how to go on.
+#[inline(always)]
+pub(super) fn walk<S, const W: usize, C: Counter>(
+    nodes: &[Node<W>],
+    ray: &Caster,
+    mut window: Window,
+    counter: &mut C,
+    mut leaf: impl FnMut(ChildRef, &mut C) -> Next,
+) where
+    S: Lanes<W>,
+{
+    let boxes = BoxTest::<S>::new(ray);
+    let near = S::splat(window.near);
+    let mut stack = Stack::new();
+    let mut current = ChildRef::node(0);
+    loop {
+        if current.is_leaf() {
+            match leaf(current, counter) {
+                Next::GoOn(left) => window = left,
+                Next::Stop => return,
+            }
+        } else {
+            counter.node();
+            let node = &nodes[current.index()];
+            let (mask, enter) = boxes.test(node, near, S::splat(window.far));
+            if let Some(child) = nearest_child(node, mask, enter, &mut stack) {
+                current = child;
+                continue;
+            }
+        }
+        loop {
+            match stack.pop() {
+                Some((distance, child)) if distance <= window.far => {
+                    current = child;
+                    break;
+                }
+                Some(_) => {}
+                None => return,
+            }
+        }
+    }
+}
+
+/// The nearest of the children in `mask`; pushes the others, farthest first.
+#[inline(always)]
+fn nearest_child<S, const W: usize>(
+    node: &Node<W>,
+    mask: u32,
+    enter: S,
+    stack: &mut Stack,
+) -> Option<ChildRef>
+where
+    S: Lanes<W>,
+{
+    if mask == 0 {
+        return None;
+    }
+    let first = mask.trailing_zeros() as usize % W;
+    let mut rest = mask & (mask - 1);
+    if rest == 0 {
+        return Some(node.children[first]);
+    }
+    let mut distances = [0.0; W];
+    enter.store(&mut distances);
+    let base = stack.len();
+    stack.push(distances[first], node.children[first]);
+    while rest != 0 {
+        let lane = rest.trailing_zeros() as usize % W;
+        rest &= rest - 1;
+        stack.insert(base, distances[lane], node.children[lane]);
+    }
+    stack.pop().map(|(_, child)| child)
+}
+
+/// A ray's constants for the triangle filter, in vectors.
+pub(super) struct Filter<S> {
+    axes: [usize; 3],
+    origin: [S; 3],
+    shear: [S; 2],
+}
+
+impl<S> Filter<S> {
+    #[inline(always)]
+    pub fn new<const W: usize>(ray: &Caster) -> Self
+    where
+        S: Lanes<W>,
+    {
+        Self {
+            axes: ray.axes,
+            origin: ray.origin.map(S::splat),
+            shear: ray.shear.map(S::splat),
+        }
+    }
+
+    /// The triangles of `block` that are not certain to be missed: a superset of those that
+    /// [`ExactRay::cross`](super::triangle::ExactRay::cross) accepts within the window.
+    ///
+    /// The same sheared edge functions as there, in `f32`. With R the largest sheared and Z
+    /// the largest main coordinate, each sheared coordinate is off by at most 2uR + 4uZ, an
+    /// edge function hence by less than 12uR² + 16uRZ + 32u²Z²; what is compared with,
+    /// 20u(R + 4uZ)(R + Z), is more. A triangle is out only where one edge function is
+    /// certainly negative and another certainly positive, or where all its corners are
+    /// certainly nearer or farther than the window (t is a weighted mean of theirs). A NaN
+    /// makes nothing certain.
+    #[inline(always)]
+    pub fn test<const W: usize>(&self, block: &Block<W>, window: &Window) -> u32
+    where
+        S: Lanes<W>,
+    {
+        let corner = |i: usize| {
+            let points = &block.corners[i];
+            let z = S::load(&points[self.axes[2]]).sub(self.origin[2]);
+            let x = S::load(&points[self.axes[0]]).sub(self.origin[0]);
+            let y = S::load(&points[self.axes[1]]).sub(self.origin[1]);
+            [
+                z.neg_mul_add(self.shear[0], x),
+                z.neg_mul_add(self.shear[1], y),
+                z,
+            ]
+        };
+        let [a, b, c] = [corner(0), corner(1), corner(2)];
+        let edge = |p: &[S; 3], q: &[S; 3]| p[0].mul_sub(q[1], p[1].mul(q[0]));
+        let (u, v, w) = (edge(&c, &b), edge(&a, &c), edge(&b, &a));
+
+        let largest = |k: usize| a[k].max_abs(b[k]).max_abs(c[k]);
+        let (r, z) = (largest(0).max(largest(1)), largest(2));
+        let error = z
+            .mul_add(S::splat(4.0 * UNIT_ROUNDOFF), r)
+            .mul(S::splat(20.0 * UNIT_ROUNDOFF))
+            .mul_add(r.add(z), S::splat(f32::MIN_POSITIVE));
+
+        let negative = u.min(v).min(w).lt(S::splat(0.0).sub(error));
+        let positive = error.lt(u.max(v).max(w));
+        let nearest = a[2].min(b[2]).min(c[2]);
+        let farthest = a[2].max(b[2]).max(c[2]);
+        let beyond = S::splat(window.depth[1]).lt(nearest);
+        let before = farthest.lt(S::splat(window.depth[0]));
+        !(negative & positive | beyond | before)
+    }
+}
+
+/// Looks at the first `count` triangles of a block for hits that are better than the best.
+///
+/// With `ANY` the first hit that `accept` likes ends the search.
+#[inline(always)]
+#[allow(clippy::too_many_arguments)] // the state of one loop, kept in registers
+pub(super) fn search_block<S, const W: usize, const ANY: bool, C: Counter>(
+    block: &Block<W>,
+    count: u32,
+    ray: &Caster,
+    filter: &Filter<S>,
+    search: &mut Search,
+    instance: u32,
+    accept: &impl Fn(&Hit) -> bool,
+    counter: &mut C,
+) -> Next
+where
+    S: Lanes<W>,
+{
+    counter.leaf();
+    let window = ray.window(search);
+    let mut lanes = filter.test(block, &window) & (u32::MAX >> (32 - count));
+    if lanes == 0 {
+        return Next::GoOn(window);
+    }
+    while lanes != 0 {
+        let lane = lanes.trailing_zeros() as usize % W;
+        lanes &= lanes - 1;
+        counter.triangle();
+        let corners = block.corners_of(lane, ray.axes);
+        let Some(crossing) = ray.exact.cross(&corners) else {
+            continue;
+        };
+        let triangle = block.triangles[lane];
+        if !search.is_better(crossing.t, key(instance, triangle)) {
+            continue;
+        }
+        let hit = Hit {
+            t: crossing.t,
+            u: crossing.u,
+            v: crossing.v,
+            triangle,
+            instance,
+        };
+        if accept(&hit) {
+            search.keep(hit);
+            if ANY {
+                return Next::Stop;
+            }
+        }
+    }
+    Next::GoOn(ray.window(search))
+}

@@ -1,0 +1,240 @@
+//! A tree of one mesh, in the width that suits the processor.
+
+use super::build::{Builder, build};
+use super::caster::Caster;
+use super::count::{Counter, Silent, TraversalCounts};
+use super::hit::{Hit, Search};
+use super::layout::{Block, ChildRef, Node, Tree};
+use super::simd::{Job, Lanes, Level};
+use super::stats::TreeStats;
+use super::traverse::{Filter, Next, search_block, walk};
+use crate::math::{Aabb, Ray, Vec3};
+
+/// Which vectors a tree is laid out for and traced with. Hits are the same with all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Width {
+    /// 8 children and triangles at a time, in plain arrays: any processor.
+    Portable,
+    /// 8 at a time with AVX2 and FMA.
+    Avx2,
+    /// 16 at a time with AVX-512.
+    Avx512,
+}
+
+impl Width {
+    /// Those that this processor can do, best last.
+    pub fn available() -> Vec<Self> {
+        [Self::Portable, Self::Avx2, Self::Avx512]
+            .into_iter()
+            .filter(|width| width.level().is_some())
+            .collect()
+    }
+
+    fn level(self) -> Option<Level> {
+        match self {
+            Self::Portable => Some(Level::PORTABLE),
+            Self::Avx2 => Level::avx2(),
+            Self::Avx512 => Level::avx512(),
+        }
+    }
+}
+
+#[derive(Debug, PartialEq)]
+enum Body {
+    Eight(Tree<8>),
+    Sixteen(Tree<16>),
+}
+
+/// A bounding volume hierarchy over triangles: finds what a ray hits.
+///
+/// Two are equal where every node and triangle is.
+#[derive(Debug, PartialEq)]
+pub struct Bvh {
+    body: Body,
+    level: Level,
+}
+
+impl Bvh {
+    /// Builds a tree of `indices.len()` triangles for this processor, on all threads.
+    ///
+    /// Every index must be below `positions.len()`. Triangles without area, and those with
+    /// coordinates that are not finite, are never hit.
+    pub fn build(positions: &[Vec3], indices: &[[u32; 3]], builder: Builder) -> Self {
+        [Width::Avx512, Width::Avx2]
+            .into_iter()
+            .find_map(|width| Self::build_with(positions, indices, builder, width))
+            .unwrap_or_else(|| Self {
+                body: Body::Eight(build(positions, indices, builder)),
+                level: Level::PORTABLE,
+            })
+    }
+
+    /// Builds a tree for `width`; `None` where the processor cannot do it.
+    pub fn build_with(
+        positions: &[Vec3],
+        indices: &[[u32; 3]],
+        builder: Builder,
+        width: Width,
+    ) -> Option<Self> {
+        let level = width.level()?;
+        let body = match width {
+            Width::Portable | Width::Avx2 => Body::Eight(build(positions, indices, builder)),
+            Width::Avx512 => Body::Sixteen(build(positions, indices, builder)),
+        };
+        Some(Self { body, level })
+    }
+
+    /// The first hit along `ray` in `t_min < t < t_max`; among several at the same `t` the
+    /// lowest triangle. `None` where there is none.
+    pub fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
+        self.closest_hit_if(ray, |_| true)
+    }
+
+    /// The first hit that `accept` does not turn down.
+    ///
+    /// `accept` may be asked in any order, and not of hits behind an accepted one.
+    pub fn closest_hit_if(&self, ray: &Ray, accept: impl Fn(&Hit) -> bool) -> Option<Hit> {
+        self.search::<false, _>(ray, &accept, &mut Silent)
+    }
+
+    /// Whether anything is hit in `t_min < t < t_max`.
+    pub fn any_hit(&self, ray: &Ray) -> bool {
+        self.any_hit_if(ray, |_| true)
+    }
+
+    /// Whether there is a hit that `accept` does not turn down.
+    pub fn any_hit_if(&self, ray: &Ray, accept: impl Fn(&Hit) -> bool) -> bool {
+        self.search::<true, _>(ray, &accept, &mut Silent).is_some()
+    }
+
+    /// [`Bvh::closest_hit`], adding to `counts` what it looked at.
+    pub fn closest_hit_counted(&self, ray: &Ray, counts: &mut TraversalCounts) -> Option<Hit> {
+        self.search::<false, _>(ray, &|_: &Hit| true, counts)
+    }
+
+    /// [`Bvh::any_hit`], adding to `counts` what it looked at.
+    pub fn any_hit_counted(&self, ray: &Ray, counts: &mut TraversalCounts) -> bool {
+        self.search::<true, _>(ray, &|_: &Hit| true, counts)
+            .is_some()
+    }
+
+    /// Around all triangles that can be hit; empty where there are none.
+    pub fn bounds(&self) -> Aabb {
+        match &self.body {
+            Body::Eight(tree) => tree.bounds,
+            Body::Sixteen(tree) => tree.bounds,
+        }
+    }
+
+    /// Size and shape.
+    pub fn stats(&self) -> TreeStats {
+        match &self.body {
+            Body::Eight(tree) => TreeStats::of(tree),
+            Body::Sixteen(tree) => TreeStats::of(tree),
+        }
+    }
+
+    /// Bytes on the heap.
+    pub fn memory_bytes(&self) -> usize {
+        fn of<const W: usize>(tree: &Tree<W>) -> usize {
+            tree.nodes.capacity() * size_of::<Node<W>>()
+                + tree.blocks.capacity() * size_of::<Block<W>>()
+        }
+        match &self.body {
+            Body::Eight(tree) => of(tree),
+            Body::Sixteen(tree) => of(tree),
+        }
+    }
+
+    fn search<const ANY: bool, C: Counter>(
+        &self,
+        ray: &Ray,
+        accept: &impl Fn(&Hit) -> bool,
+        counter: &mut C,
+    ) -> Option<Hit> {
+        let caster = Caster::new(ray, &self.bounds(), 0.0)?;
+        let mut search = Search::new(ray.t_min, ray.t_max);
+        self.cast::<ANY, _>(&caster, &mut search, 0, accept, counter);
+        search.hit
+    }
+
+    /// Looks for a hit better than that of `search`, as instance `instance`.
+    pub(super) fn cast<const ANY: bool, C: Counter>(
+        &self,
+        ray: &Caster,
+        search: &mut Search,
+        instance: u32,
+        accept: &impl Fn(&Hit) -> bool,
+        counter: &mut C,
+    ) {
+        match &self.body {
+            Body::Eight(tree) => self.level.run8(Cast::<ANY, 8, _, _> {
+                tree,
+                ray,
+                search,
+                instance,
+                accept,
+                counter,
+            }),
+            Body::Sixteen(tree) => self.level.run16(Cast::<ANY, 16, _, _> {
+                tree,
+                ray,
+                search,
+                instance,
+                accept,
+                counter,
+            }),
+        }
+    }
+}
+
+/// A search in one tree, to be compiled for each kind of vectors.
+struct Cast<'a, const ANY: bool, const W: usize, A, C> {
+    tree: &'a Tree<W>,
+    ray: &'a Caster,
+    search: &'a mut Search,
+    instance: u32,
+    accept: &'a A,
+    counter: &'a mut C,
+}
+
+impl<const ANY: bool, const W: usize, A, C> Job<W> for Cast<'_, ANY, W, A, C>
+where
+    A: Fn(&Hit) -> bool,
+    C: Counter,
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Lanes<W>>(self) {
+        let Self {
+            tree,
+            ray,
+            search,
+            instance,
+            accept,
+            counter,
+        } = self;
+        let filter = Filter::<S>::new(ray);
+        let window = ray.window(search);
+        let mut leaf = |child: ChildRef, counter: &mut C| {
+            let block = &tree.blocks[child.index()];
+            let count = child.count();
+            search_block::<S, W, ANY, C>(
+                block, count, ray, &filter, search, instance, accept, counter,
+            )
+        };
+        if !tree.nodes.is_empty() {
+            walk::<S, W, C>(&tree.nodes, ray, window, counter, leaf);
+            return;
+        }
+        let mut left = tree.triangles;
+        for block in 0..tree.blocks.len() {
+            let child = ChildRef::leaf(block, left.min(W));
+            left -= left.min(W);
+            if matches!(leaf(child, counter), Next::Stop) {
+                return;
+            }
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! The ray-triangle test that decides what a hit is.
+//!
+//! It is the watertight test of Woop, Benthin and Wald 2013 ("Watertight Ray/Triangle
+//! Intersection") carried out in f64 from the f32 corners: the triangle is moved so that the
+//! ray starts at the origin and sheared so that it runs along one axis; signs of three 2D edge
+//! functions then tell whether the ray passes inside. Two triangles that share an edge compute
+//! the same edge function up to its sign, so a ray cannot slip between them. Everything faster
+//! in the tracing core only has to let through what this test accepts.
+
+/// Relative tolerance of [`ExactRay::confirms`]: `t` is rounded to `f32`, which moves the
+/// point by at most half of this, and the f64 arithmetic by much less.
+const POINT_TOLERANCE: f64 = f32::EPSILON as f64;
+
+/// Areas below so many times their error bound are recomputed without cancellation.
+const CANCELLED: f64 = (1u64 << 27) as f64;
+
+/// Parameter and barycentric weights of a hit, each rounded once from f64.
+#[derive(Clone, Copy)]
+pub(super) struct Crossing {
+    pub t: f32,
+    pub u: f32,
+    pub v: f32,
+}
+
+/// The f64 constants of a ray, with coordinates in the order (second, third, main axis).
+pub(super) struct ExactRay {
+    origin: [f64; 3],
+    direction: [f64; 3],
+    shear: [f64; 2],
+}
+
+impl ExactRay {
+    /// `origin` and `direction` in the caster's order of axes; the last component of
+    /// `direction` is the largest and not zero.
+    pub fn new(origin: [f32; 3], direction: [f32; 3]) -> Self {
+        let direction = direction.map(f64::from);
+        Self {
+            origin: origin.map(f64::from),
+            direction,
+            shear: [direction[0] / direction[2], direction[1] / direction[2]],
+        }
+    }
+
+    /// The slopes along the main axis, in `[-1, 1]`.
+    pub fn shear(&self) -> [f64; 2] {
+        self.shear
+    }
+
+    /// Where the line of the ray crosses the triangle, whatever the sign of `t`.
+    ///
+    /// `corners` are in the caster's order of axes. Edges and corners belong to the triangle.
+    /// `None` also where the triangle has no area as seen along the ray, beyond rounding.
+    pub fn cross(&self, corners: &[[f32; 3]; 3]) -> Option<Crossing> {
+        let [a, b, c] = corners.map(|p| self.shear_point(p));
+        let [reach, error] = reach_and_edge_error(&[a, b, c]);
+        let mut weights = edge_functions(a, b, c);
+        if (weights[0] + weights[1] + weights[2]).abs() < CANCELLED * error {
+            weights = edge_functions_compensated(a, b, c);
+        }
+        let area = weights[0] + weights[1] + weights[2];
+        let turn = area.signum();
+        // Written so that a NaN is a miss.
+        if !(area.abs() > error && weights.iter().all(|&w| turn * w >= -error)) {
+            return None;
+        }
+        let [u, v, w] = weights.map(|w| (turn * w).max(0.0));
+        let area = u + v + w;
+        let mut depth = u * a[2] + v * b[2] + w * c[2];
+        if depth.abs() <= 8.0 * f64::EPSILON * reach * area {
+            depth = 0.0; // the ray starts in the plane, as far as can be told
+        }
+        let crossing = Crossing {
+            t: (depth / (area * self.direction[2])) as f32,
+            u: (v / area) as f32,
+            v: (w / area) as f32,
+        };
+        self.confirms(corners, crossing.t).then_some(crossing)
+    }
+
+    /// Moves the ray's origin to zero and shears its direction onto the main axis.
+    #[inline(always)]
+    fn shear_point(&self, p: [f32; 3]) -> [f64; 3] {
+        let z = f64::from(p[2]) - self.origin[2];
+        [
+            f64::from(p[0]) - self.origin[0] - self.shear[0] * z,
+            f64::from(p[1]) - self.origin[1] - self.shear[1] * z,
+            z,
+        ]
+    }
+
+    /// Whether the point at `t` is in the triangle's box, up to the rounding of `t`.
+    ///
+    /// True of every ordinary hit. It fails only where the origin is closer to the plane than
+    /// f64 can tell from the far ends of the triangle; demanding it makes the box culling of
+    /// [`Caster`] exact by construction, for it bounds every hit by the box of its triangle.
+    fn confirms(&self, corners: &[[f32; 3]; 3], t: f32) -> bool {
+        let [a, b, c] = corners;
+        (0..3).all(|k| {
+            let way = f64::from(t) * self.direction[k];
+            let point = self.origin[k] + way;
+            let slack = POINT_TOLERANCE * (self.origin[k].abs() + way.abs());
+            let low = f64::from(a[k].min(b[k]).min(c[k]));
+            let high = f64::from(a[k].max(b[k]).max(c[k]));
+            low - slack <= point && point <= high + slack
+        })
+    }
+}
+
+/// The largest main coordinate Z, and a bound, with room, of what rounding does to an edge
+/// function of sheared corners: with R the largest sheared coordinate, shearing moves a corner
+/// by up to 2^-52 (R + Z), and the products lose 2^-52 R².
+///
+/// Edges reach out by so much. It closes the gaps of exactly collinear corners (T-junctions),
+/// where the argument of shared edges does not hold.
+#[inline(always)]
+fn reach_and_edge_error(corners: &[[f64; 3]; 3]) -> [f64; 2] {
+    let [a, b, c] = corners.map(|p| p.map(f64::abs));
+    let largest = |k: usize| a[k].max(b[k]).max(c[k]);
+    let (r, z) = (largest(0).max(largest(1)), largest(2));
+    [z, 8.0 * f64::EPSILON * r * (r + z)]
+}
+
+/// Twice the signed areas opposite to the corners a, b, c.
+#[inline(always)]
+fn edge_functions(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> [f64; 3] {
+    let edge = |p: [f64; 3], q: [f64; 3]| p[0] * q[1] - p[1] * q[0];
+    [edge(c, b), edge(a, c), edge(b, a)]
+}
+
+/// The same with the rounding error of each product, for slivers (aspect ratios beyond 2^23)
+/// and triangles seen edge-on.
+#[cold]
+fn edge_functions_compensated(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> [f64; 3] {
+    let edge = |p: [f64; 3], q: [f64; 3]| {
+        let (x, x_error) = two_product(p[0], q[1]);
+        let (y, y_error) = two_product(p[1], q[0]);
+        (x - y) + (x_error - y_error)
+    };
+    [edge(c, b), edge(a, c), edge(b, a)]
+}
+
+/// The product and its rounding error, exactly (Dekker 1971, "A Floating-Point Technique for
+/// Extending the Available Precision"); without a fused operation, so that all machines agree.
+fn two_product(x: f64, y: f64) -> (f64, f64) {
+    let product = x * y;
+    let (x_high, x_low) = halves(x);
+    let (y_high, y_low) = halves(y);
+    let error = x_low * y_low - (((product - x_high * y_high) - x_low * y_high) - x_high * y_low);
+    (product, error)
+}
+
+/// Splits into two numbers of at most 26 bits.
+fn halves(x: f64) -> (f64, f64) {
+    let scaled = x * 134_217_729.0; // 2^27 + 1
+    let high = scaled - (scaled - x);
+    (high, x - high)
+}
+
+/// Whether three corners span any area at all; those that do not are never hit.
+///
+/// Exact while the corners' exponents differ by less than 29.
+pub(super) fn has_area(corners: &[[f32; 3]; 3]) -> bool {
+    let [a, b, c] = corners.map(|p| p.map(f64::from));
+    let e = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
+    let f = [c[0] - a[0], c[1] - a[1], c[2] - a[2]];
+    (0..3).any(|k| {
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        let (x, x_error) = two_product(e[i], f[j]);
+        let (y, y_error) = two_product(e[j], f[i]);
+        x != y || x_error != y_error
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_product_is_exact() {
+        let x = 1.0 + f64::EPSILON;
+        let (p, e) = two_product(x, x);
+        assert_eq!(p, 1.0 + 2.0 * f64::EPSILON);
+        assert_eq!(e, f64::EPSILON * f64::EPSILON);
+    }
+
+    #[test]
+    fn corners_on_a_line_have_no_area() {
+        let p = |x: f32| [x, 3.0 * x, 7.0 * x];
+        assert!(!has_area(&[p(1.0), p(2.0), p(5.0)]));
+        assert!(!has_area(&[p(1.0), p(1.0), [4.0, 0.1, 0.2]]));
+        assert!(has_area(&[p(1.0), p(2.0), [5.0, 15.0, 35.000_004]]));
+    }
+}

@@ -1,0 +1,334 @@
+//! G10, G12, G13: every builder and width finds the very same hit, and it is the right one.
+
+use glam::Vec3;
+use halfshade::bvh::{Builder, Bvh, Hit};
+use halfshade::math::Ray;
+use proptest::prelude::*;
+
+use super::meshes::{Mesh, Random, bunny, soup, sphere, terrain};
+use super::reference::check;
+
+fn bits(hit: Option<Hit>) -> Option<[u32; 5]> {
+    hit.map(|h| {
+        [
+            h.t.to_bits(),
+            h.u.to_bits(),
+            h.v.to_bits(),
+            h.triangle,
+            h.instance,
+        ]
+    })
+}
+
+/// What all of `trees` find; panics where two differ.
+fn agreed(trees: &[(String, Bvh)], ray: &Ray) -> Option<Hit> {
+    let hit = trees[0].1.closest_hit(ray);
+    for (name, tree) in trees {
+        let other = tree.closest_hit(ray);
+        assert_eq!(
+            bits(other),
+            bits(hit),
+            "{name} against {}: {ray:?}",
+            trees[0].0
+        );
+        assert_eq!(tree.any_hit(ray), hit.is_some(), "any hit, {name}: {ray:?}");
+    }
+    hit
+}
+
+/// Holds the trees of `mesh` against each other and against brute force; returns the share of
+/// rays that hit.
+fn check_all(mesh: &Mesh, rays: &[Ray], margin: f64) -> f64 {
+    let trees = mesh.trees();
+    let hits = rays
+        .iter()
+        .filter(|ray| check(mesh, ray, agreed(&trees, ray), margin));
+    hits.count() as f64 / rays.len() as f64
+}
+
+#[test]
+fn random_triangles() {
+    for (count, seed) in [(1, 1), (5, 2), (16, 3), (17, 4), (300, 5), (3000, 6)] {
+        let mesh = soup(count, seed);
+        let share = check_all(&mesh, &mesh.rays(2000, seed), 1e-9);
+        assert!(count < 300 || share > 0.3, "{count} triangles: {share} hit");
+    }
+}
+
+#[test]
+fn closed_meshes_far_away_huge_and_tiny() {
+    let mesh = sphere(3);
+    for scale in [1e-30, 1e-12, 1.0, 1e12, 1e17] {
+        let mesh = mesh.clone().map(|p| scale * p);
+        assert!(
+            check_all(&mesh, &mesh.rays(1000, 7), 1e-9) > 0.3,
+            "scale {scale}"
+        );
+    }
+    for shift in [1e2, 1e4, 1e6] {
+        let mesh = mesh.clone().map(|p| p + shift);
+        assert!(
+            check_all(&mesh, &mesh.rays(1000, 8), 1e-9) > 0.3,
+            "shift {shift}"
+        );
+    }
+}
+
+#[test]
+fn rays_from_far_away() {
+    let mesh = terrain(20);
+    let mut random = Random(9);
+    for distance in [1e3, 1e5, 1e6] {
+        let rays: Vec<Ray> = (0..1000)
+            .map(|_| {
+                let target = Vec3::new(random.unit(), random.unit(), 0.0);
+                let origin = target + distance * random.vector();
+                Ray::new(origin, target - origin)
+            })
+            .collect();
+        // Seen at grazing angles from so far, f64 itself leaves barycentric weights unsure.
+        assert!(check_all(&mesh, &rays, 1e-4) > 0.3, "distance {distance}");
+    }
+}
+
+#[test]
+fn directions_of_any_length() {
+    let mesh = soup(500, 10);
+    for length in [1e-38, 1e-25, 1e-10, 1e10, 1e25, 1e37] {
+        let rays = mesh.rays(300, 11);
+        let stretched = |ray: &Ray| Ray::new(ray.origin, length * ray.direction.normalize());
+        let rays: Vec<Ray> = rays.iter().map(stretched).collect();
+        let share = check_all(&mesh, &rays, 1e-4);
+        assert!(share > 0.3, "length {length}: {share} hit");
+    }
+}
+
+#[test]
+fn coordinates_at_the_end_of_the_range() {
+    let mesh = soup(300, 12).map(|p| 1e38 * p);
+    let rays = mesh.rays(500, 13);
+    let trees = mesh.trees();
+    let hits = rays
+        .iter()
+        .filter(|ray| agreed(&trees, ray).is_some())
+        .count();
+    assert!(hits > 100, "{hits}");
+}
+
+#[test]
+fn axis_parallel_rays_with_zeros_of_both_signs_from_faces_of_boxes() {
+    // A grid of unit cells: origins and targets on its planes, edges and corners.
+    let mut mesh = Mesh::default();
+    let mut random = Random(14);
+    for _ in 0..400 {
+        let mut cell = || Vec3::from([0, 1, 2].map(|_| random.below(5) as f32 - 2.0));
+        let corner = cell();
+        mesh.add([corner, corner + cell().signum(), corner - cell().signum()]);
+    }
+    let values = [-0.0, 0.0, 1.0, -1.0];
+    let mut rays = Vec::new();
+    for i in 0..64 {
+        let direction = Vec3::new(values[i % 4], values[i / 4 % 4], values[i / 16]);
+        for _ in 0..40 {
+            let coordinate = |_| 0.5 * (random.below(11) as f32 - 5.0);
+            let origin = Vec3::from([0, 1, 2].map(coordinate));
+            rays.push(Ray::new(origin, direction));
+        }
+    }
+    let trees = mesh.trees();
+    let mut hits = 0;
+    for ray in rays {
+        let hit = agreed(&trees, &ray);
+        assert!(hit.is_none() || ray.direction != Vec3::ZERO);
+        // Crossings on edges are not certain, so a margin is left to the reference.
+        if ray.direction != Vec3::ZERO && check(&mesh, &ray, hit, 1e-9) {
+            hits += 1;
+        }
+    }
+    assert!(hits > 500, "{hits}");
+}
+
+#[test]
+fn the_range_of_t_is_open() {
+    let mesh = soup(300, 15);
+    let trees = mesh.trees();
+    for ray in mesh.rays(1000, 16) {
+        let Some(first) = agreed(&trees, &ray) else {
+            continue;
+        };
+        let t_max = Ray {
+            t_max: first.t,
+            ..ray
+        };
+        assert_eq!(agreed(&trees, &t_max), None);
+        let t_max = Ray {
+            t_max: first.t.next_up(),
+            ..ray
+        };
+        assert_eq!(agreed(&trees, &t_max), Some(first));
+        let beyond = agreed(
+            &trees,
+            &Ray {
+                t_min: first.t,
+                ..ray
+            },
+        );
+        assert!(beyond.is_none_or(|hit| hit.t > first.t));
+        let t_min = Ray {
+            t_min: first.t.next_down(),
+            ..ray
+        };
+        assert_eq!(agreed(&trees, &t_min), Some(first));
+    }
+}
+
+#[test]
+fn coincident_triangles_tie_to_the_lowest() {
+    let mut mesh = Mesh::default();
+    let layers = soup(40, 17);
+    for copy in 0..50 {
+        for i in 0..40 {
+            let mut corners = layers.corners(i);
+            corners.rotate_left(copy % 3);
+            mesh.add(corners);
+        }
+    }
+    let trees = mesh.trees();
+    let mut hits = 0;
+    for ray in mesh.rays(2000, 18) {
+        if let Some(hit) = agreed(&trees, &ray) {
+            // Copies with other first corners round u and v, and perhaps t, differently.
+            let same = |other: u32| other % 40 == hit.triangle % 40;
+            let lower = |other: &u32| same(*other) && *other < hit.triangle;
+            let nearest = |h: &Hit| h.t <= hit.t && lower(&h.triangle);
+            assert!(!trees[0].1.any_hit_if(&ray, nearest), "{hit:?}");
+            hits += 1;
+        }
+    }
+    assert!(hits > 1000, "{hits}");
+}
+
+#[test]
+fn walking_through_all_hits_in_order() {
+    let mesh = soup(400, 19);
+    let trees = mesh.trees();
+    for ray in mesh.rays(200, 20) {
+        let all: Vec<Vec<_>> = trees.iter().map(|(_, tree)| walk(tree, &ray)).collect();
+        assert!(all.iter().all(|hits| *hits == all[0]));
+        assert!(all[0].is_sorted());
+        let count = (0..400)
+            .filter_map(|i| super::reference::cross(&ray, mesh.corners(i), 0))
+            .filter(|c| c.inside > 0.0 && c.t > 0.0)
+            .count();
+        assert_eq!(all[0].len(), count, "{ray:?}");
+    }
+}
+
+/// All hits, front to back, as a renderer walks through transparent ones.
+fn walk(tree: &Bvh, ray: &Ray) -> Vec<(u32, u32)> {
+    let place = |hit: &Hit| (hit.t.to_bits(), hit.triangle);
+    let mut found = Vec::new();
+    while let Some(hit) = tree.closest_hit_if(ray, |hit| Some(&place(hit)) > found.last()) {
+        found.push(place(&hit));
+    }
+    found
+}
+
+#[test]
+fn turned_down_hits_do_not_hide_others() {
+    let mesh = soup(500, 21);
+    let trees = mesh.trees();
+    let odd = |hit: &Hit| hit.triangle % 2 == 1;
+    let half = Mesh {
+        indices: mesh.indices.iter().copied().skip(1).step_by(2).collect(),
+        ..mesh.clone()
+    };
+    let half = half.tree(Builder::Balanced);
+    for ray in mesh.rays(1000, 22) {
+        let expected = half
+            .closest_hit(&ray)
+            .map(|hit| (hit.t, 2 * hit.triangle + 1));
+        for (name, tree) in &trees {
+            let hit = tree.closest_hit_if(&ray, odd);
+            assert_eq!(hit.map(|hit| (hit.t, hit.triangle)), expected, "{name}");
+            assert_eq!(tree.any_hit_if(&ray, odd), expected.is_some(), "{name}");
+        }
+    }
+}
+
+#[test]
+fn rays_that_are_not_numbers_hit_nothing() {
+    for (name, tree) in sphere(2).trees() {
+        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            for k in 0..3 {
+                let mut place = Vec3::ZERO;
+                place[k] = bad;
+                let bad = [
+                    Ray::new(place, Vec3::X),
+                    Ray::new(Vec3::ZERO, place + Vec3::Y),
+                ];
+                assert!(bad.iter().all(|ray| !tree.any_hit(ray)), "{name}");
+            }
+        }
+        let nowhere = Ray {
+            t_min: 2.0,
+            t_max: 1.0,
+            ..Ray::new(Vec3::ZERO, Vec3::X)
+        };
+        assert!(!tree.any_hit(&nowhere));
+        let unknown = Ray {
+            t_max: f32::NAN,
+            ..Ray::new(Vec3::ZERO, Vec3::X)
+        };
+        assert!(!tree.any_hit(&unknown));
+    }
+}
+
+#[test]
+fn the_bunny() {
+    let Some(mesh) = bunny() else { return };
+    let trees = mesh.trees();
+    let mut rays = mesh.rays(300, 23);
+    let mut random = Random(24);
+    for _ in 0..300 {
+        let at = mesh.positions[random.below(mesh.positions.len())];
+        let origin = at + 0.2 * random.vector();
+        rays.push(Ray::new(origin, at - origin));
+    }
+    let hits = rays
+        .iter()
+        .filter(|ray| check(&mesh, ray, agreed(&trees, ray), 1e-9));
+    assert!(hits.count() > 300);
+}
+
+/// Few distinct values, so that points coincide, align and meet planes; and any others.
+fn coordinate() -> impl Strategy<Value = f32> {
+    prop_oneof![
+        4 => (-2i32..=2).prop_map(|i| i as f32),
+        2 => -2.0f32..2.0,
+        1 => prop::sample::select(vec![-0.0, 1e-20, -1e-30, 1e-8, 1e3, 1e-42]),
+    ]
+}
+
+fn point() -> impl Strategy<Value = Vec3> {
+    [coordinate(), coordinate(), coordinate()].prop_map(Vec3::from)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn all_trees_agree_on_adversarial_coordinates(
+        positions in prop::collection::vec(point(), 3..40),
+        picks in prop::collection::vec(any::<[u8; 3]>(), 1..80),
+        rays in prop::collection::vec((point(), point()), 1..20),
+    ) {
+        let pick = |i: u8| u32::from(i) % positions.len() as u32;
+        let indices = picks.iter().map(|triangle| triangle.map(pick)).collect();
+        let mesh = Mesh { positions, indices };
+        let trees = mesh.trees();
+        for (origin, direction) in rays {
+            agreed(&trees, &Ray::new(origin, direction));
+        }
+    }
+}
