@@ -13,7 +13,7 @@ const POND_RADIUS: f64 = 1.7;
 
 /// Adds the garden to `model`.
 pub fn add_garden(model: &mut Model) {
-    let lawn = model.material("lawn", [0.075, 0.15, 0.035], Finish::Matte);
+    let lawn = model.material("lawn", [0.105, 0.20, 0.045], Finish::Matte);
     ground(model, lawn);
     path(model);
     pond(model);
@@ -236,9 +236,9 @@ fn is_free(x: f64, z: f64) -> bool {
 fn grass(model: &mut Model) {
     let mut random = Random::new(40);
     let shades = [
-        ("grass", [0.10, 0.21, 0.04], 14),
-        ("pale grass", [0.16, 0.24, 0.06], 11),
-        ("dark grass", [0.06, 0.15, 0.03], 17),
+        ("grass", [0.13, 0.26, 0.05], 14),
+        ("pale grass", [0.20, 0.29, 0.07], 11),
+        ("dark grass", [0.08, 0.19, 0.035], 17),
     ];
     for (name, color, blades) in shades {
         let material = model.material(name, color, Finish::Matte);
