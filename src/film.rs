@@ -1,6 +1,6 @@
 //! Pixels being accumulated.
 //!
-//! Sums are kept in double precision, so that neither 2^24 samples in one pixel nor radiances of
+//! Means are kept in double precision, so that neither 2^24 samples in one pixel nor radiances of
 //! very different size lose digits. A sample that is not finite is dropped, counted, and the
 //! first is kept with what it takes to trace it again.
 
@@ -51,8 +51,9 @@ impl Rect {
 /// The samples of one pixel.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Pixel {
-    sum: [f64; 3],
-    sum_of_squares: [f64; 3],
+    mean: [f64; 3],
+    /// Sum of the squared deviations from the mean.
+    deviation: [f64; 3],
     count: u64,
 }
 
@@ -62,19 +63,20 @@ impl Pixel {
         if !value.is_finite() {
             return false;
         }
-        for (i, c) in value.channels().into_iter().enumerate() {
-            let c = f64::from(c);
-            self.sum[i] += c;
-            self.sum_of_squares[i] += c * c;
-        }
         self.count += 1;
+        let share = 1.0 / self.count as f64;
+        for (i, c) in value.channels().into_iter().enumerate() {
+            // Welford 1962, "Note on a Method for Calculating Corrected Sums of Squares".
+            let off = f64::from(c) - self.mean[i];
+            self.mean[i] += off * share;
+            self.deviation[i] += off * (f64::from(c) - self.mean[i]);
+        }
         true
     }
 
     /// The mean of its samples; black where there are none.
     pub fn mean(&self) -> Rgb {
-        let n = self.count.max(1) as f64;
-        Rgb::from(self.sum.map(|s| (s / n) as f32))
+        Rgb::from(self.mean.map(|m| m as f32))
     }
 
     /// Variance of the mean, as if the samples were independent: for stratified patterns it is
@@ -84,11 +86,7 @@ impl Pixel {
             return Rgb::BLACK;
         }
         let n = self.count as f64;
-        Rgb::from(std::array::from_fn(|i| {
-            let mean = self.sum[i] / n;
-            let spread = (self.sum_of_squares[i] / n - mean * mean).max(0.0);
-            (spread / (n - 1.0)) as f32
-        }))
+        Rgb::from(self.deviation.map(|d| (d / (n * (n - 1.0))) as f32))
     }
 
     /// How many samples it holds.

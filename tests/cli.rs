@@ -540,8 +540,8 @@ fn a_sample_is_replayed_with_its_rays() {
     let folder = folder();
     let output = render_well(folder.path(), &["--replay", "20,20,3"]);
     let text = stdout(&output);
-    assert!(text.starts_with("Camera"), "{text}");
-    assert!(text.contains("Shadow"), "{text}");
+    assert!(text.starts_with("camera ray"), "{text}");
+    assert!(text.contains("shadow ray"), "{text}");
     assert!(
         text.trim_end()
             .lines()

@@ -6,7 +6,7 @@ use super::count::{Counter, Silent};
 use super::hit::{Hit, Search};
 use super::layout::{ChildRef, Node};
 use super::simd::{Job, Lanes, Level};
-use super::traverse::{Next, walk};
+use super::traverse::{Next, Visitor, walk};
 use super::tree::Bvh;
 use crate::math::{Aabb, DAffine3, DVec3, Ray, UNIT_ROUNDOFF, Vec3, next_down, next_up};
 
@@ -313,27 +313,54 @@ where
             counter,
         } = self;
         let window = caster.window(search);
-        let mut visit = |leaf: ChildRef, counter: &mut C| {
-            let index = forest.leaves[leaf.index()];
-            let instance = &forest.instances[index as usize];
-            let accept = |hit: &Hit| instance.confirms(ray, hit.t, slack) && accept(hit);
-            let tree = &forest.trees[instance.tree as usize];
-            if let Some(caster) = Caster::new(&instance.ray(ray), &tree.bounds(), 0.0) {
-                tree.cast::<ANY, C>(&caster, search, index, &accept, counter);
-            }
-            if ANY && search.hit.is_some() {
-                Next::Stop
-            } else {
-                Next::GoOn(caster.window(search))
-            }
+        let mut instances = Instances::<ANY, A> {
+            forest,
+            ray,
+            caster,
+            slack,
+            search,
+            accept,
         };
         if forest.nodes.is_empty() {
             for leaf in 0..forest.leaves.len() {
                 // At most one: where there are two there is a node.
-                visit(ChildRef::leaf(leaf, 1), counter);
+                instances.visit(ChildRef::leaf(leaf, 1), counter);
             }
         } else {
-            walk::<S, WIDTH, C>(&forest.nodes, caster, window, counter, visit);
+            walk::<S, WIDTH, C>(&forest.nodes, caster, window, counter, instances);
+        }
+    }
+}
+
+/// Searches the instances that a walk comes to.
+struct Instances<'a, const ANY: bool, A> {
+    forest: &'a Forest,
+    ray: &'a Ray,
+    caster: &'a Caster,
+    slack: f32,
+    search: &'a mut Search,
+    accept: &'a A,
+}
+
+impl<const ANY: bool, A, C> Visitor<C> for Instances<'_, ANY, A>
+where
+    A: Fn(&Hit) -> bool,
+    C: Counter,
+{
+    #[inline(always)]
+    fn visit(&mut self, leaf: ChildRef, counter: &mut C) -> Next {
+        let index = self.forest.leaves[leaf.index()];
+        let instance = &self.forest.instances[index as usize];
+        let (ray, slack, accept) = (self.ray, self.slack, self.accept);
+        let accept = |hit: &Hit| instance.confirms(ray, hit.t, slack) && accept(hit);
+        let tree = &self.forest.trees[instance.tree as usize];
+        if let Some(caster) = Caster::new(&instance.ray(ray), &tree.bounds(), 0.0) {
+            tree.cast::<ANY, C>(&caster, self.search, index, &accept, counter);
+        }
+        if ANY && self.search.hit.is_some() {
+            Next::Stop
+        } else {
+            Next::GoOn(self.caster.window(self.search))
         }
     }
 }

@@ -33,9 +33,9 @@ impl<S> BoxTest<S> {
         S: Lanes<W>,
     {
         Self {
-            inverse: ray.inverse.map(S::splat),
-            near_offset: ray.near_offset.map(S::splat),
-            far_offset: ray.far_offset.map(S::splat),
+            inverse: splat(ray.inverse),
+            near_offset: splat(ray.near_offset),
+            far_offset: splat(ray.far_offset),
             near_side: ray.near_side,
         }
     }
@@ -60,16 +60,21 @@ impl<S> BoxTest<S> {
     }
 }
 
+/// What is done at a leaf.
+pub(super) trait Visitor<C> {
+    /// Looks at `leaf` and says how to go on. Must be `#[inline(always)]`: a function of its
+    /// own, such as a closure may become, would lack the instruction set of the walk.
+    fn visit(&mut self, leaf: ChildRef, counter: &mut C) -> Next;
+}
+
 /// Walks from the first of `nodes` to the leaves that may hold a better hit, nearest first.
-///
-/// `leaf` looks at one and says how to go on.
 #[inline(always)]
 pub(super) fn walk<S, const W: usize, C: Counter>(
     nodes: &[Node<W>],
     ray: &Caster,
     mut window: Window,
     counter: &mut C,
-    mut leaf: impl FnMut(ChildRef, &mut C) -> Next,
+    mut visitor: impl Visitor<C>,
 ) where
     S: Lanes<W>,
 {
@@ -79,7 +84,7 @@ pub(super) fn walk<S, const W: usize, C: Counter>(
     let mut current = ChildRef::node(0);
     loop {
         if current.is_leaf() {
-            match leaf(current, counter) {
+            match visitor.visit(current, counter) {
                 Next::GoOn(left) => window = left,
                 Next::Stop => return,
             }
@@ -151,8 +156,8 @@ impl<S> Filter<S> {
     {
         Self {
             axes: ray.axes,
-            origin: ray.origin.map(S::splat),
-            shear: ray.shear.map(S::splat),
+            origin: splat(ray.origin),
+            shear: [S::splat(ray.shear[0]), S::splat(ray.shear[1])],
         }
     }
 
@@ -171,23 +176,15 @@ impl<S> Filter<S> {
     where
         S: Lanes<W>,
     {
-        let corner = |i: usize| {
-            let points = &block.corners[i];
-            let z = S::load(&points[self.axes[2]]).sub(self.origin[2]);
-            let x = S::load(&points[self.axes[0]]).sub(self.origin[0]);
-            let y = S::load(&points[self.axes[1]]).sub(self.origin[1]);
-            [
-                z.neg_mul_add(self.shear[0], x),
-                z.neg_mul_add(self.shear[1], y),
-                z,
-            ]
-        };
-        let [a, b, c] = [corner(0), corner(1), corner(2)];
-        let edge = |p: &[S; 3], q: &[S; 3]| p[0].mul_sub(q[1], p[1].mul(q[0]));
-        let (u, v, w) = (edge(&c, &b), edge(&a, &c), edge(&b, &a));
+        let a = self.shear(&block.corners[0]);
+        let b = self.shear(&block.corners[1]);
+        let c = self.shear(&block.corners[2]);
+        let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
 
-        let largest = |k: usize| a[k].max_abs(b[k]).max_abs(c[k]);
-        let (r, z) = (largest(0).max(largest(1)), largest(2));
+        let x = a[0].max_abs(b[0]).max_abs(c[0]);
+        let y = a[1].max_abs(b[1]).max_abs(c[1]);
+        let z = a[2].max_abs(b[2]).max_abs(c[2]);
+        let r = x.max(y);
         let error = z
             .mul_add(S::splat(4.0 * UNIT_ROUNDOFF), r)
             .mul(S::splat(20.0 * UNIT_ROUNDOFF))
@@ -201,6 +198,34 @@ impl<S> Filter<S> {
         let before = farthest.lt(S::splat(window.depth[0]));
         !(negative & positive | beyond | before)
     }
+
+    /// One corner of each triangle, moved so that the ray starts at the origin and sheared so
+    /// that it runs along the last axis.
+    #[inline(always)]
+    fn shear<const W: usize>(&self, points: &[[f32; W]; 3]) -> [S; 3]
+    where
+        S: Lanes<W>,
+    {
+        let z = S::load(&points[self.axes[2]]).sub(self.origin[2]);
+        let x = S::load(&points[self.axes[0]]).sub(self.origin[0]);
+        let y = S::load(&points[self.axes[1]]).sub(self.origin[1]);
+        [
+            z.neg_mul_add(self.shear[0], x),
+            z.neg_mul_add(self.shear[1], y),
+            z,
+        ]
+    }
+}
+
+/// Twice the area between the origin, `p` and `q`.
+#[inline(always)]
+fn edge<S: Lanes<W>, const W: usize>(p: [S; 3], q: [S; 3]) -> S {
+    p[0].mul_sub(q[1], p[1].mul(q[0]))
+}
+
+#[inline(always)]
+fn splat<S: Lanes<W>, const W: usize>(v: [f32; 3]) -> [S; 3] {
+    [S::splat(v[0]), S::splat(v[1]), S::splat(v[2])]
 }
 
 /// Looks at the first `count` triangles of a block for hits that are better than the best.

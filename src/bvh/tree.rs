@@ -7,7 +7,7 @@ use super::hit::{Hit, Search};
 use super::layout::{Block, ChildRef, Node, Tree};
 use super::simd::{Job, Lanes, Level};
 use super::stats::TreeStats;
-use super::traverse::{Filter, Next, search_block, walk};
+use super::traverse::{Filter, Next, Visitor, search_block, walk};
 use crate::math::{Aabb, Ray, Vec3};
 
 /// Which vectors a tree is laid out for and traced with. Hits are the same with all.
@@ -215,26 +215,57 @@ where
             accept,
             counter,
         } = self;
-        let filter = Filter::<S>::new(ray);
         let window = ray.window(search);
-        let mut leaf = |child: ChildRef, counter: &mut C| {
-            let block = &tree.blocks[child.index()];
-            let count = child.count();
-            search_block::<S, W, ANY, C>(
-                block, count, ray, &filter, search, instance, accept, counter,
-            )
+        let mut blocks = Blocks::<ANY, W, S, A> {
+            tree,
+            ray,
+            filter: Filter::new(ray),
+            search,
+            instance,
+            accept,
         };
         if !tree.nodes.is_empty() {
-            walk::<S, W, C>(&tree.nodes, ray, window, counter, leaf);
+            walk::<S, W, C>(&tree.nodes, ray, window, counter, blocks);
             return;
         }
         let mut left = tree.triangles;
         for block in 0..tree.blocks.len() {
             let child = ChildRef::leaf(block, left.min(W));
             left -= left.min(W);
-            if matches!(leaf(child, counter), Next::Stop) {
+            if matches!(blocks.visit(child, counter), Next::Stop) {
                 return;
             }
         }
+    }
+}
+
+/// Searches the blocks that a walk comes to.
+struct Blocks<'a, const ANY: bool, const W: usize, S, A> {
+    tree: &'a Tree<W>,
+    ray: &'a Caster,
+    filter: Filter<S>,
+    search: &'a mut Search,
+    instance: u32,
+    accept: &'a A,
+}
+
+impl<const ANY: bool, const W: usize, S, A, C> Visitor<C> for Blocks<'_, ANY, W, S, A>
+where
+    S: Lanes<W>,
+    A: Fn(&Hit) -> bool,
+    C: Counter,
+{
+    #[inline(always)]
+    fn visit(&mut self, leaf: ChildRef, counter: &mut C) -> Next {
+        search_block::<S, W, ANY, C>(
+            &self.tree.blocks[leaf.index()],
+            leaf.count(),
+            self.ray,
+            &self.filter,
+            self.search,
+            self.instance,
+            self.accept,
+            counter,
+        )
     }
 }

@@ -21,7 +21,10 @@ fn an_empty_file_is_a_scene_with_default_settings() {
     assert_eq!(imported.settings, Settings::default());
     assert_eq!(imported.scene.triangle_count(), 0);
     assert!(imported.scene.background.radiance.is_black());
-    assert!(imported.scene.background.ambient.is_black());
+    // Ambient light comes with the default lights, and only with them.
+    assert!(!imported.scene.background.ambient.is_black());
+    let dark = scene("light = []\n").unwrap();
+    assert!(dark.scene.background.ambient.is_black());
     assert!(imported.warnings.is_empty());
 }
 

@@ -101,7 +101,7 @@ pub(super) fn build<const W: usize>(
         block
     };
     let bounds = Part::new(&mut primitives).bounds.to_aabb();
-    let fragment = match builder {
+    let mut fragment = match builder {
         Builder::None => Fragment {
             nodes: Vec::new(),
             leaves: primitives.chunks(W).map(make_block).collect(),
@@ -109,6 +109,8 @@ pub(super) fn build<const W: usize>(
         Builder::Median => Maker::new(MEDIAN_LEAF, false, make_block).make_all(&mut primitives),
         Builder::Balanced => Maker::new(W, true, make_block).make_all(&mut primitives),
     };
+    fragment.nodes.shrink_to_fit();
+    fragment.leaves.shrink_to_fit();
     Tree {
         bounds,
         nodes: fragment.nodes,
