@@ -117,6 +117,7 @@ pub fn film_position(pixel: UVec2, u: Vec2) -> Vec2 {
 }
 
 #[cfg(test)]
+#[allow(clippy::expect_used)]
 mod tests {
     use super::*;
 

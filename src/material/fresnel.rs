@@ -51,6 +51,7 @@ pub fn schlick_weight(cos_i: f32) -> f32 {
 }
 
 #[cfg(test)]
+#[allow(clippy::expect_used)]
 mod tests {
     use super::*;
 
