@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use super::Failure;
 use super::console::print;
-use super::options::SceneOptions;
+use super::options::SceneArguments;
 
 /// Print what is in a scene or model, and what was ignored or repaired
 #[derive(Args, Debug)]
@@ -22,7 +22,7 @@ Examples:
   halfshade info bunny.obj --json")]
 pub struct InfoOptions {
     #[command(flatten)]
-    scene: SceneOptions,
+    scene: SceneArguments,
     /// Print JSON
     #[arg(long)]
     json: bool,

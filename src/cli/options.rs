@@ -5,9 +5,12 @@ use std::path::PathBuf;
 use clap::Args;
 use halfshade::bvh::Builder;
 use halfshade::film::Rect;
+use halfshade::import::SceneOptions;
 use halfshade::math::UVec2;
 use halfshade::sampling::{Pattern, Target};
-use halfshade::scene::{IntegratorKind, Settings, ToneMap};
+use halfshade::scene::{
+    IntegratorKind, MAX_DEPTH, MAX_LIGHT_SAMPLES, MAX_SAMPLES, Settings, ToneMap,
+};
 
 use super::arguments::{self, SampleId};
 use super::console::Console;
@@ -29,7 +32,7 @@ Ctrl-C ends the render and saves what there is, with exit status 1.";
 #[command(after_help = EXAMPLES)]
 pub struct RenderOptions {
     #[command(flatten)]
-    pub scene: SceneOptions,
+    pub scene: SceneArguments,
     #[command(flatten)]
     pub picture: PictureOptions,
     #[command(flatten)]
@@ -44,7 +47,7 @@ pub struct RenderOptions {
 
 /// What is read.
 #[derive(Args, Debug)]
-pub struct SceneOptions {
+pub struct SceneArguments {
     /// A scene file (.toml), or a model by itself (.gltf, .glb, .obj)
     pub scene: PathBuf,
     /// Change a key of the scene file, like light.0.radius=0; may be given again
@@ -69,10 +72,10 @@ pub struct PictureOptions {
     #[arg(long, value_name = "NAME")]
     pub camera: Option<String>,
     /// What is computed
-    #[arg(long, value_name = "KIND", value_parser = one_of(names::INTEGRATORS))]
+    #[arg(long, value_name = "KIND", value_parser = one_of(IntegratorKind::ALL, IntegratorKind::name))]
     pub integrator: Option<IntegratorKind>,
     /// Scattering events of a path; 1 is direct light only
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_DEPTH)))]
     pub max_depth: Option<u32>,
 }
 
@@ -81,16 +84,16 @@ pub struct PictureOptions {
 #[command(next_help_heading = "Sampling")]
 pub struct SamplingOptions {
     /// Camera samples per pixel
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 30))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES)))]
     pub samples: Option<u32>,
     /// Their layout
-    #[arg(long, value_parser = one_of(names::PATTERNS))]
+    #[arg(long, value_parser = one_of(Pattern::ALL, Pattern::name))]
     pub pattern: Option<Pattern>,
     /// What part of its pixel they land in
-    #[arg(long, value_parser = one_of(names::TARGETS))]
+    #[arg(long, value_parser = one_of(Target::ALL, Target::name))]
     pub target: Option<Target>,
     /// Shadow rays per light and shading point, in place of what each light says
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_LIGHT_SAMPLES)))]
     pub light_samples: Option<u32>,
     /// Other seeds give other random numbers
     #[arg(long, value_name = "N")]
@@ -105,7 +108,7 @@ pub struct WorkOptions {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
     pub threads: Option<u16>,
     /// How the tree over the triangles is built; none tests every triangle
-    #[arg(long, value_name = "BUILDER", default_value = "balanced", value_parser = one_of(names::BUILDERS))]
+    #[arg(long, value_name = "BUILDER", default_value_t, value_parser = names::builder())]
     pub bvh: Builder,
     /// Trace one sample of one pixel (column, row, index), print its rays and write no files
     #[arg(long, value_name = "X,Y,I", value_parser = arguments::sample_id)]
@@ -123,23 +126,23 @@ pub struct OutputOptions {
     #[arg(long, value_name = "EV", allow_negative_numbers = true, value_parser = arguments::stops)]
     pub exposure: Option<f32>,
     /// What happens to what is too bright; none clips it (PNG)
-    #[arg(long, value_parser = one_of(names::TONE_MAPS))]
+    #[arg(long, value_parser = one_of(ToneMap::ALL, ToneMap::name))]
     pub tone_map: Option<ToneMap>,
     /// 16 bits a channel (PNG)
     #[arg(long)]
     pub png16: bool,
     /// Layers beside the picture, with commas between them (EXR)
-    #[arg(long, value_delimiter = ',', value_parser = one_of(names::LAYERS))]
+    #[arg(long, value_delimiter = ',', value_parser = one_of(LayerKind::ALL, LayerKind::name))]
     pub layers: Vec<LayerKind>,
     /// Write what was done, how long it took and a digest of the pixels, as JSON
     #[arg(long, value_name = "FILE.json")]
     pub stats: Option<PathBuf>,
 }
 
-impl SceneOptions {
+impl SceneArguments {
     /// How the scene is imported.
-    pub fn import_options(&self) -> halfshade::import::SceneOptions {
-        halfshade::import::SceneOptions {
+    pub fn import_options(&self) -> SceneOptions {
+        SceneOptions {
             is_strict: self.strict,
             overrides: self.set.clone(),
             camera: None,
@@ -149,7 +152,7 @@ impl SceneOptions {
 
 impl RenderOptions {
     /// How the scene is imported.
-    pub fn import_options(&self) -> halfshade::import::SceneOptions {
+    pub fn import_options(&self) -> SceneOptions {
         let mut options = self.scene.import_options();
         options.camera = self.picture.camera.clone();
         // Not later, with the other options: a default camera frames the scene in this size.
