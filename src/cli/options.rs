@@ -23,7 +23,8 @@ Examples:
       makes house.png
   halfshade render bunny.obj --size 640x480 --samples 16 -o bunny.png -o bunny.exr
       a model by itself gets a camera and lights, which are printed
-  halfshade render house.toml --set light.0.radius=0 --crop 100,50,64,64 -o part.exr
+  halfshade render scenes/house.toml --set light.0.angle=0 --crop 100,50,64,64 -o part.exr
+      a hard shadow of the sun
 
 Ctrl-C ends the render and saves what there is, with exit status 1.";
 
@@ -50,7 +51,7 @@ pub struct RenderOptions {
 pub struct SceneArguments {
     /// A scene file (.toml), or a model by itself (.gltf, .glb, .obj)
     pub scene: PathBuf,
-    /// Change a key of the scene file, like light.0.radius=0; may be given again
+    /// Change a key of the scene file, like light.0.angle=0; may be given again
     #[arg(long, value_name = "PATH=VALUE", value_parser = arguments::assignment)]
     pub set: Vec<(String, String)>,
     /// Refuse files that require an extension that is not known
@@ -62,19 +63,19 @@ pub struct SceneArguments {
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Picture")]
 pub struct PictureOptions {
-    /// Pixels across and down, like 1280x720
+    /// Pixels across and down [default: the scene's, or 1280x720]
     #[arg(long, value_name = "WxH", value_parser = arguments::size)]
     pub size: Option<UVec2>,
-    /// Render only this part: upper left pixel, columns, rows
+    /// Render only this part: upper left pixel, columns, rows [default: all]
     #[arg(long, value_name = "X,Y,W,H", value_parser = arguments::crop)]
     pub crop: Option<Rect>,
-    /// Which of the scene's cameras
+    /// Which of the scene's cameras [default: the scene's choice, or the first]
     #[arg(long, value_name = "NAME")]
     pub camera: Option<String>,
-    /// What is computed
+    /// What is computed [default: the scene's, or whitted]
     #[arg(long, value_name = "KIND", value_parser = one_of(IntegratorKind::ALL, IntegratorKind::name))]
     pub integrator: Option<IntegratorKind>,
-    /// Scattering events of a path; 1 is direct light only
+    /// Scattering events of a path; 1 is direct light only [default: the scene's, or 8]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_DEPTH)))]
     pub max_depth: Option<u32>,
 }
@@ -83,19 +84,19 @@ pub struct PictureOptions {
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Sampling")]
 pub struct SamplingOptions {
-    /// Camera samples per pixel
+    /// Camera samples per pixel [default: the scene's, or 64]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES)))]
     pub samples: Option<u32>,
-    /// Their layout
+    /// Their layout [default: the scene's, or sobol]
     #[arg(long, value_parser = one_of(Pattern::ALL, Pattern::name))]
     pub pattern: Option<Pattern>,
-    /// What part of its pixel they land in
+    /// What part of its pixel they land in [default: the scene's, or rectangle]
     #[arg(long, value_parser = one_of(Target::ALL, Target::name))]
     pub target: Option<Target>,
-    /// Shadow rays per light and shading point, in place of what each light says
+    /// Shadow rays per light and shading point, in place of what each light says or 1
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_LIGHT_SAMPLES)))]
     pub light_samples: Option<u32>,
-    /// Other seeds give other random numbers
+    /// Other seeds give other random numbers [default: the scene's, or 0]
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
 }
@@ -110,7 +111,7 @@ pub struct WorkOptions {
     /// How the tree over the triangles is built; none tests every triangle
     #[arg(long, value_name = "BUILDER", default_value_t, value_parser = names::builder())]
     pub bvh: Builder,
-    /// Trace one sample of one pixel (column, row, index), print its rays and write no files
+    /// Trace one sample of one pixel (column, row, index), print its rays in world coordinates and write no files
     #[arg(long, value_name = "X,Y,I", value_parser = arguments::sample_id)]
     pub replay: Option<SampleId>,
 }
@@ -122,10 +123,10 @@ pub struct OutputOptions {
     /// A .png or .exr file; may be given again [default: the scene's name with .png, in this folder]
     #[arg(short, long, value_name = "FILE")]
     pub output: Vec<PathBuf>,
-    /// Stops of exposure (PNG)
+    /// Stops of exposure (PNG) [default: 0]
     #[arg(long, value_name = "EV", allow_negative_numbers = true, value_parser = arguments::stops)]
     pub exposure: Option<f32>,
-    /// What happens to what is too bright; none clips it (PNG)
+    /// What happens to what is too bright; none clips it (PNG) [default: none]
     #[arg(long, value_parser = one_of(ToneMap::ALL, ToneMap::name))]
     pub tone_map: Option<ToneMap>,
     /// 16 bits a channel (PNG)

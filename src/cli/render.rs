@@ -91,7 +91,8 @@ fn run_on_pool(options: &RenderOptions, targets: Option<&Targets>) -> Result<(),
 
 /// The scene, with settings that follow the options.
 fn load(options: &RenderOptions) -> Result<Imported, Failure> {
-    let mut imported = import(&options.scene.scene, &options.import_options())?;
+    let mut imported = import(&options.scene.scene, &options.import_options())
+        .map_err(|error| Failure::of_import("render", &error))?;
     announce(options.console, &imported);
     options.apply(&mut imported.settings);
     Ok(imported)
