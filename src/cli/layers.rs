@@ -66,6 +66,12 @@ enum Owned {
 }
 
 impl LayerValues {
+    /// Bytes of one pixel of the picture and of each of `kinds`, at most: here, and once more as
+    /// channels of a file that is written.
+    pub fn pixel_bytes(kinds: &[LayerKind]) -> u64 {
+        2 * (1 + kinds.len() as u64) * size_of::<Rgb>() as u64
+    }
+
     /// The picture of `film` and `kinds`, the views of which `film` holds in the same order.
     pub fn of_film(film: &Film, kinds: &[LayerKind]) -> Self {
         let mut views = film.layers.iter();
