@@ -93,7 +93,7 @@ pub struct SamplingOptions {
     /// What part of its pixel they land in [default: the scene's, or rectangle]
     #[arg(long, value_parser = one_of(Target::ALL, Target::name))]
     pub target: Option<Target>,
-    /// Shadow rays per light and shading point, in place of what each light says or 1
+    /// Shadow rays per light and shading point [default: what each light says, or 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_LIGHT_SAMPLES)))]
     pub light_samples: Option<u32>,
     /// Other seeds give other random numbers [default: the scene's, or 0]
