@@ -99,7 +99,12 @@ fn measure(tree: &Bvh, set: &RaySet) -> String {
 /// `digest` with every bit of `hit` in it (FNV-1a): equal where two programs find the same.
 fn mix(digest: u64, hit: Option<&Hit>) -> u64 {
     let words = hit.map_or([0; 4], |hit| {
-        [hit.t.to_bits(), hit.u.to_bits(), hit.v.to_bits(), hit.triangle]
+        [
+            hit.t.to_bits(),
+            hit.u.to_bits(),
+            hit.v.to_bits(),
+            hit.triangle,
+        ]
     });
     words.into_iter().fold(digest, |digest, word| {
         (digest ^ u64::from(word)).wrapping_mul(0x0100_0000_01b3)
