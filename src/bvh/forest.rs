@@ -8,7 +8,7 @@ use super::layout::{ChildRef, Node};
 use super::simd::{Job, Lanes, Level};
 use super::traverse::{Visitor, walk};
 use super::tree::Bvh;
-use crate::math::{Aabb, DAffine3, DVec3, Ray, UNIT_ROUNDOFF, Vec3, next_down, next_up};
+use crate::math::{Aabb, DAffine3, DVec3, Ray, UNIT_ROUNDOFF, Vec3};
 
 /// What rays are traced through: one tree as it is, or instances of several.
 #[derive(Debug)]
