@@ -137,7 +137,7 @@ pub struct Sparse {
 #[derive(Debug, Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
 pub struct SparseIndices {
-    pub buffer_view: usize,
+    pub buffer_view: Option<usize>,
     pub byte_offset: u64,
     pub component_type: u32,
 }
@@ -146,7 +146,7 @@ pub struct SparseIndices {
 #[derive(Debug, Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
 pub struct SparseValues {
-    pub buffer_view: usize,
+    pub buffer_view: Option<usize>,
     pub byte_offset: u64,
 }
 
@@ -154,7 +154,7 @@ pub struct SparseValues {
 #[derive(Debug, Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
 pub struct BufferView {
-    pub buffer: usize,
+    pub buffer: Option<usize>,
     pub byte_offset: u64,
     pub byte_length: u64,
     pub byte_stride: u64,
