@@ -4,6 +4,7 @@
 //! came from. A file that cannot be shown is an [`ImportError`] with its path and place; what is
 //! legal but not shown as its author meant it is a [`Warning`]. Nothing here prints.
 
+mod budget;
 mod files;
 mod gltf;
 mod images;

@@ -2,11 +2,11 @@
 //!
 //! Every range is checked against the bytes that are there before anything is allocated.
 
-use super::budget::Budget;
 use super::buffers::Buffers;
 use super::component::{Component, code, signed_normalized};
 use super::document::{Accessor, Document, Sparse};
 use crate::import::Problem;
+use crate::import::budget::Budget;
 
 /// Reads accessors of one document.
 #[derive(Debug)]

@@ -9,7 +9,6 @@
 //! images, and the extensions of which [`extensions`] says what is missing without them.
 
 mod accessor;
-mod budget;
 mod buffers;
 mod camera;
 mod component;
@@ -32,7 +31,6 @@ mod uri;
 use std::path::Path;
 
 use accessor::AccessorReader;
-use budget::Budget;
 use buffers::Buffers;
 use container::Container;
 use document::Document;
@@ -41,6 +39,7 @@ use light::Lights;
 use meshes::{Meshes, Part};
 use texture::Textures;
 
+use super::budget::Budget;
 use super::{ImportError, ImportOptions, Imported, Problem, WarningCode, Warnings, files};
 use crate::material::{Material, MaterialId, MetallicRoughness};
 use crate::math::DAffine3;
