@@ -390,3 +390,22 @@ fn an_image_under_many_names_is_read_once() {
     assert_eq!(imported.scene.materials.len(), names.len());
     assert_eq!(imported.scene.images.len(), 1);
 }
+
+#[test]
+fn an_absolute_name_is_opened_where_it_points() {
+    let elsewhere = Folder::with(&[("deep/wood.png", &png([1, 2, 3, 255]))]);
+    let name = elsewhere.path("deep/wood.png");
+    let folder = Folder::with(&[
+        (
+            "a.obj",
+            format!("mtllib a.mtl\n{FACE}usemtl m\nf 1/1 2/1 3/1\n").as_bytes(),
+        ),
+        (
+            "a.mtl",
+            format!("newmtl m\nmap_Kd {}\n", name.display()).as_bytes(),
+        ),
+    ]);
+    let imported = folder.import("a.obj").unwrap();
+    assert_eq!(imported.scene.images.len(), 1);
+    assert!(imported.warnings.is_empty());
+}
