@@ -270,8 +270,8 @@ fn transformed(bounds: &Aabb, to_world: &DAffine3) -> Aabb {
     let low = corners.into_iter().fold(DVec3::INFINITY, DVec3::min);
     let high = corners.into_iter().fold(DVec3::NEG_INFINITY, DVec3::max);
     Aabb {
-        min: Vec3::from(low.as_vec3().to_array().map(next_down)),
-        max: Vec3::from(high.as_vec3().to_array().map(next_up)),
+        min: Vec3::from(low.as_vec3().to_array().map(f32::next_down)),
+        max: Vec3::from(high.as_vec3().to_array().map(f32::next_up)),
     }
 }
 
