@@ -33,7 +33,7 @@ pub enum IntegratorKind {
     Whitted,
     /// Shading normals, mapped from `[-1, 1]` to `[0, 1]`.
     Normal,
-    /// Distance along the view, in metres.
+    /// Distance along the ray, in metres.
     Depth,
     /// Diffuse reflectance or base colour.
     Albedo,
