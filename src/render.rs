@@ -36,6 +36,16 @@ pub struct Job<'a> {
     pub layers: Vec<ViewKind>,
 }
 
+impl Job<'_> {
+    /// The most memory that [`render`] takes for the film, bytes: tiles and film are there
+    /// together while they are put together.
+    pub fn memory_bytes(&self) -> u64 {
+        let pixel = 2 * size_of::<Pixel>();
+        let layer = size_of::<[f64; 3]>() + size_of::<[f32; 3]>();
+        self.crop.area() * (pixel + self.layers.len() * layer) as u64
+    }
+}
+
 /// How far a render has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {

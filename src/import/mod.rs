@@ -79,6 +79,13 @@ impl fmt::Display for ImportError {
 }
 
 impl ImportError {
+    /// Whether an override or the choice of a camera is wrong, and not a file: the place is then
+    /// the option of the command line.
+    pub fn is_argument(&self) -> bool {
+        let place = self.place.as_deref().unwrap_or("");
+        place.starts_with("--set ") || place.starts_with("--camera ")
+    }
+
     /// `what` is wrong with `path` as a whole.
     pub fn invalid(path: &Path, what: impl Into<String>) -> Self {
         Self {

@@ -8,7 +8,10 @@ mod mesh;
 mod settings;
 
 pub use mesh::{Mesh, MeshError, MeshId};
-pub use settings::{Background, IntegratorKind, Settings, ToneMap};
+pub use settings::{
+    Background, IntegratorKind, MAX_DEPTH, MAX_LIGHT_SAMPLES, MAX_PIXELS, MAX_SAMPLES, MAX_SIDE,
+    Settings, ToneMap,
+};
 
 use crate::camera::Camera;
 use crate::light::Light;

@@ -90,7 +90,9 @@ fn place_camera(
     options: &SceneOptions,
 ) -> Result<Option<View>, ImportError> {
     if let Some(name) = &options.camera {
-        choose(scene, name).map_err(|problem| ImportError::invalid(path, problem))?;
+        choose(scene, name).map_err(|problem| {
+            ImportError::invalid_at(path, format!("--camera {name}"), problem)
+        })?;
         // A lens that belongs to a view of the scene file does not fit another camera.
         if section.own.is_some() {
             return Ok(None);
