@@ -9,12 +9,9 @@ use crate::light::{
     DiskLight, DistantLight, Falloff, Light, PointLight, RectangleLight, SphereLight, SpotLight,
 };
 use crate::math::{DVec3, UnitVec3, Vec3};
-use crate::scene::Placed;
+use crate::scene::{MAX_LIGHT_SAMPLES, Placed};
 
 const HEADING: &str = "[[light]]";
-
-/// More shadow rays per shading point than anyone can wait for.
-const MAX_SAMPLES: u32 = 1 << 24;
 
 const HALF_ANGLE: Domain = Domain {
     words: "a number of degrees from 0 to 180",
@@ -107,8 +104,8 @@ pub fn read(source: &Source, node: &Node) -> Result<Placed<Light>, ImportError> 
         let kinds = kinds.join(", ");
         source.invalid(&node.place, format!("{HEADING} needs \"kind\": {kinds}"))
     })?;
-    let (keys, reader) = kind.one_of(KINDS)?;
-    let heading = format!("{HEADING} of kind \"{}\"", kind.string()?);
+    let (name, (keys, reader)) = kind.one_of(KINDS, |(name, _)| name)?;
+    let heading = format!("{HEADING} of kind \"{name}\"");
     reader(&Section::new(source, node, heading, keys)?)
 }
 
@@ -155,7 +152,7 @@ fn emission(section: &Section, key: &'static str) -> Result<Rgb, ImportError> {
 }
 
 fn samples(section: &Section) -> Result<u32, ImportError> {
-    let samples = section.get("samples", |v| v.integer_u32(1, MAX_SAMPLES))?;
+    let samples = section.get("samples", |v| v.integer_u32(1, MAX_LIGHT_SAMPLES))?;
     Ok(samples.unwrap_or(1))
 }
 

@@ -92,8 +92,8 @@ fn read(source: &Source, node: &Node, warnings: &mut Warnings) -> Result<Materia
             format!("{HEADING} needs \"kind\": phong or gltf"),
         )
     })?;
-    let (keys, reader) = kind.one_of(KINDS)?;
-    let heading = format!("{HEADING} of kind \"{}\"", kind.string()?);
+    let (name, (keys, reader)) = kind.one_of(KINDS, |(name, _)| name)?;
+    let heading = format!("{HEADING} of kind \"{name}\"");
     reader(&Section::new(source, node, heading, keys)?, warnings)
 }
 

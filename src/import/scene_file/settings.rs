@@ -6,35 +6,7 @@ use crate::color::Rgb;
 use crate::import::ImportError;
 use crate::math::UVec2;
 use crate::sampling::{Pattern, SamplingConfig, Target};
-use crate::scene::{IntegratorKind, Settings};
-
-/// Most pixels along one side of a picture.
-const MAX_SIDE: u32 = 65_536;
-/// Most pixels of a picture.
-const MAX_PIXELS: u64 = 1 << 28;
-/// Most camera samples per pixel.
-const MAX_SAMPLES: u32 = 1 << 30;
-/// Most scattering events of a path: integrators recurse.
-const MAX_DEPTH: u32 = 1024;
-
-/// The patterns by name.
-const PATTERNS: &[(&str, Pattern)] = &[
-    ("grid", Pattern::Grid),
-    ("jittered", Pattern::Jittered),
-    ("random", Pattern::Random),
-    ("sobol", Pattern::Sobol),
-];
-
-/// The targets by name.
-const TARGETS: &[(&str, Target)] = &[("rectangle", Target::Rectangle), ("circle", Target::Circle)];
-
-/// The integrators by name.
-const INTEGRATORS: &[(&str, IntegratorKind)] = &[
-    ("whitted", IntegratorKind::Whitted),
-    ("normal", IntegratorKind::Normal),
-    ("depth", IntegratorKind::Depth),
-    ("albedo", IntegratorKind::Albedo),
-];
+use crate::scene::{IntegratorKind, MAX_DEPTH, MAX_PIXELS, MAX_SAMPLES, MAX_SIDE, Settings};
 
 /// Reads `[film]`, `[sampling]` and `[integrator]` of `root`; defaults where they are left out.
 pub fn read(root: &Section) -> Result<Settings, ImportError> {
@@ -108,10 +80,10 @@ fn sampling(value: Value) -> Result<SamplingConfig, ImportError> {
             .get("samples", |v| v.integer_u32(1, MAX_SAMPLES))?
             .unwrap_or(default.samples),
         pattern: section
-            .get("pattern", |v| v.one_of(PATTERNS))?
+            .get("pattern", |v| v.one_of(Pattern::ALL, Pattern::name))?
             .unwrap_or(default.pattern),
         target: section
-            .get("target", |v| v.one_of(TARGETS))?
+            .get("target", |v| v.one_of(Target::ALL, Target::name))?
             .unwrap_or(default.target),
         seed: section
             .get("seed", |v| v.integer(0, u64::MAX))?
@@ -124,5 +96,5 @@ fn integrator(value: Value) -> Result<IntegratorKind, ImportError> {
         let what = "the integrator \"path\"";
         return Err(value.source.unsupported(&value.node.place, what));
     }
-    value.one_of(INTEGRATORS)
+    value.one_of(IntegratorKind::ALL, IntegratorKind::name)
 }

@@ -121,12 +121,16 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// One of several named things.
-    pub fn one_of<T: Copy>(&self, choices: &[(&str, T)]) -> Result<T, ImportError> {
+    /// One of several things, which are called what `name` says.
+    pub fn one_of<T: Copy>(
+        &self,
+        choices: &[T],
+        name: impl Fn(T) -> &'static str,
+    ) -> Result<T, ImportError> {
         let text = self.string()?;
-        let choice = choices.iter().find(|(name, _)| *name == text);
-        choice.map(|(_, choice)| *choice).ok_or_else(|| {
-            let names: Vec<_> = choices.iter().map(|(name, _)| *name).collect();
+        let choice = choices.iter().find(|&&choice| name(choice) == text);
+        choice.copied().ok_or_else(|| {
+            let names: Vec<_> = choices.iter().map(|&choice| name(choice)).collect();
             self.unknown(text, &names)
         })
     }
