@@ -1,7 +1,6 @@
 //! How much light comes through between two points.
 
 use crate::color::Rgb;
-use crate::material::fresnel_dielectric;
 use crate::math::Ray;
 use crate::prepare::{PreparedScene, Surface};
 
@@ -21,13 +20,11 @@ pub fn transmittance(scene: &PreparedScene, ray: &Ray) -> Rgb {
 /// Share of the light that crosses `surface`.
 fn let_through(surface: &Surface) -> Rgb {
     let opacity = surface.material.opacity(&surface.lookup);
-    let holes = Rgb::splat(1.0 - opacity);
-    let transmit = surface.bsdf.specular.transmit;
-    if opacity == 0.0 || transmit.is_black() {
-        return holes;
-    }
+    let specular = &surface.bsdf.specular;
     let at = &surface.interaction;
     let cos = at.wo.dot(*at.shading_normal).min(1.0);
-    let entering = 1.0 - fresnel_dielectric(cos, surface.relative_index());
-    holes + transmit * (opacity * entering)
+    // The ray runs inside as it does outside, without the bend; a body's exit reflects as much
+    // as its entrance, so both are taken at the outside's angle.
+    let (_, through) = specular.split(cos, specular.index_of_refraction);
+    Rgb::splat(1.0 - opacity) + through * opacity
 }

@@ -3,8 +3,9 @@
 
 use crate::bvh::Hit;
 use crate::color::Rgb;
+use crate::interaction::Interaction;
 use crate::light::{Light, LightSample, ShadowEnd};
-use crate::material::{fresnel_dielectric, reflect, refract};
+use crate::material::{Bsdf, reflect, refract};
 use crate::math::Ray;
 use crate::prepare::{PreparedScene, Surface};
 use crate::sampling::Sampler;
@@ -35,9 +36,14 @@ struct Pending {
     weight: Rgb,
     /// Scattering events before it.
     depth: u32,
-    /// Which vertex of the tree of rays it leads to: 1 is what the camera sees, the mirror image
-    /// seen at vertex n is 2n, what is behind it 2n + 1.
+    /// Which vertex of the tree of rays it leads to: 1 is what the camera sees ([`child`]).
     vertex: u32,
+}
+
+/// The vertex that a ray leads to which leaves `vertex` by the way of `branch`, an odd number: a
+/// step of a linear congruential generator, so that even the deepest have numbers of their own.
+fn child(vertex: u32, branch: u32) -> u32 {
+    vertex.wrapping_mul(0x9e37_79b1).wrapping_add(branch)
 }
 
 impl<'a> Whitted<'a> {
@@ -45,17 +51,11 @@ impl<'a> Whitted<'a> {
     pub fn new(scene: &'a PreparedScene<'a>, settings: &Settings) -> Self {
         let pattern = settings.sampling.pattern;
         let samples = |light| light_samples(light, settings.light_samples, pattern);
-        let has_surface = |light: &&Light| match light {
-            Light::Disk(light) => light.is_visible,
-            Light::Rectangle(light) => light.is_visible,
-            Light::Sphere(light) => light.is_visible,
-            Light::Point(_) | Light::Spot(_) | Light::Distant(_) => false,
-        };
         Self {
             scene,
             max_depth: settings.max_depth,
             samples: scene.lights.iter().map(samples).collect(),
-            visible: scene.lights.iter().filter(has_surface).collect(),
+            visible: scene.lights.iter().filter(|l| l.is_visible()).collect(),
         }
     }
 
@@ -129,14 +129,20 @@ impl<'a> Whitted<'a> {
         if from.depth >= self.max_depth {
             return total;
         }
+        let unmirrored = surface.bsdf.without_mirrored();
         for (number, light) in self.scene.lights.iter().enumerate() {
             let number = number as u32;
             let count = self.samples[number as usize];
+            let bsdf = if light.is_visible() {
+                unmirrored
+            } else {
+                surface.bsdf
+            };
             let mut sum = Rgb::BLACK;
             for j in 0..count {
                 let u = sampler.light(from.vertex, number, j, count);
                 if let Some(sample) = light.sample(at.point, u) {
-                    sum += self.direct(surface, &sample, from, number, log);
+                    sum += self.direct(at, &bsdf, &sample, from, number, log);
                 }
             }
             total += sum / count as f32;
@@ -147,18 +153,24 @@ impl<'a> Whitted<'a> {
     /// What one sample of a light adds.
     fn direct(
         &self,
-        surface: &Surface,
+        at: &Interaction,
+        bsdf: &Bsdf,
         sample: &LightSample,
         from: &Pending,
         light: u32,
         log: &mut RayLog,
     ) -> Rgb {
-        let at = &surface.interaction;
         let cos_i = at.shading_normal.dot(*sample.wi);
         if cos_i <= 0.0 || at.geometric_normal.dot(*sample.wi) <= 0.0 {
             return Rgb::BLACK;
         }
-        let scattered = surface.bsdf.eval(at.shading_normal, at.wo, sample.wi);
+        // The end of the shadow ray may be below the horizon of a point that sees the centre.
+        if let ShadowEnd::Point(end) = sample.shadow
+            && at.geometric_normal.dot(end - at.point) <= 0.0
+        {
+            return Rgb::BLACK;
+        }
+        let scattered = bsdf.eval(at.shading_normal, at.wo, sample.wi);
         let unshadowed = sample.weight * scattered * cos_i;
         if unshadowed.is_black() {
             return Rgb::BLACK;
@@ -184,14 +196,8 @@ impl<'a> Whitted<'a> {
         let at = &surface.interaction;
         let specular = &surface.bsdf.specular;
         let cos_o = at.shading_normal.dot(*at.wo).min(1.0);
-        let mut mirrored = specular.mirrored(cos_o);
-        let mut through = specular.transmit;
         let eta = surface.relative_index();
-        if !through.is_black() {
-            let reflected = fresnel_dielectric(cos_o, eta);
-            mirrored += through * reflected;
-            through = through * (1.0 - reflected);
-        }
+        let (mirrored, through) = specular.split(cos_o, eta);
         if from.depth + 1 < self.max_depth {
             let mut send = |kind, direction, weight: Rgb, vertex: u32| {
                 let weight = from.weight * weight;
@@ -205,16 +211,16 @@ impl<'a> Whitted<'a> {
                     });
                 }
             };
-            let mirror = reflect(*at.wo, *at.shading_normal);
-            if at.geometric_normal.dot(mirror) > 0.0 {
-                let vertex = from.vertex.wrapping_mul(2);
-                send(RayKind::Reflected, mirror, mirrored, vertex);
-            }
-            if !specular.is_straight()
-                && let Some(beyond) = refract(*at.wo, *at.shading_normal, eta)
-            {
-                let vertex = from.vertex.wrapping_mul(2).wrapping_add(1);
-                send(RayKind::Refracted, beyond, through, vertex);
+            let mirror = Some(reflect(*at.wo, *at.shading_normal))
+                .filter(|mirror| at.geometric_normal.dot(*mirror) > 0.0)
+                .unwrap_or_else(|| reflect(*at.wo, *at.geometric_normal));
+            send(RayKind::Reflected, mirror, mirrored, child(from.vertex, 1));
+            // Light must come out on the far side, else a body is entered and never left.
+            let beyond = refract(*at.wo, *at.shading_normal, eta)
+                .filter(|beyond| at.geometric_normal.dot(*beyond) < 0.0)
+                .or_else(|| refract(*at.wo, *at.geometric_normal, eta));
+            if let Some(beyond) = beyond.filter(|_| !specular.is_straight()) {
+                send(RayKind::Refracted, beyond, through, child(from.vertex, 3));
             }
         }
         if specular.is_straight() {

@@ -98,6 +98,16 @@ impl Light {
         }
     }
 
+    /// Whether rays can meet the light itself.
+    pub fn is_visible(&self) -> bool {
+        match self {
+            Light::Disk(light) => light.is_visible,
+            Light::Rectangle(light) => light.is_visible,
+            Light::Sphere(light) => light.is_visible,
+            Light::Point(_) | Light::Spot(_) | Light::Distant(_) => false,
+        }
+    }
+
     /// Where `ray` meets the light itself, and the radiance it sees there.
     ///
     /// `None` for lights without a surface, invisible ones, and the back of one-sided ones.

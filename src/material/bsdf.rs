@@ -3,9 +3,9 @@
 use std::f32::consts::PI;
 
 use crate::color::Rgb;
-use crate::math::{UnitVec3, Vec3};
+use crate::math::UnitVec3;
 
-use super::fresnel::{reflect, schlick_weight};
+use super::fresnel::{fresnel_dielectric, reflect, schlick_weight};
 
 /// Scattering at one point of a surface, of either kind of material.
 ///
@@ -43,6 +43,11 @@ pub enum Glossy {
         f90: f32,
         /// Roughness α, above 0.
         alpha: f32,
+        /// Reflectance at normal and at grazing incidence of the dielectric alone: what it
+        /// reflects does not reach the diffuse layer below.
+        dielectric: [f32; 2],
+        /// Share of the lobe, in `[0, 1]`, that no mirror ray follows.
+        unmirrored: f32,
     },
 }
 
@@ -71,9 +76,18 @@ impl Specular {
         is_thin: true,
     };
 
-    /// The mirrored share at `cos_o`, without what Fresnel's equations take from `transmit`.
-    pub fn mirrored(&self, cos_o: f32) -> Rgb {
-        self.reflect + self.reflect_grazing * schlick_weight(cos_o)
+    /// The shares that are mirrored and let through at `cos_o`, for `eta` as in
+    /// [`fresnel_dielectric`].
+    pub fn split(&self, cos_o: f32, eta: f32) -> (Rgb, Rgb) {
+        let mirrored = self.reflect + self.reflect_grazing * schlick_weight(cos_o);
+        if self.transmit.is_black() {
+            return (mirrored, Rgb::BLACK);
+        }
+        let reflected = fresnel_dielectric(cos_o, eta);
+        (
+            mirrored + self.transmit * reflected,
+            self.transmit * (1.0 - reflected),
+        )
     }
 
     /// Whether light that is let through keeps its direction.
@@ -98,23 +112,53 @@ impl Bsdf {
             Glossy::Phong {
                 reflectance,
                 exponent,
-            } => diffuse + reflectance * phong_lobe(*normal, *wo, *wi, exponent),
-            Glossy::Ggx { f0, f90, alpha } => diffuse + ggx(*normal, *wo, *wi, f0, f90, alpha),
+            } => diffuse + reflectance * phong_lobe(normal, wo, wi, exponent),
+            Glossy::Ggx {
+                f0,
+                f90,
+                alpha,
+                dielectric,
+                ..
+            } => {
+                let Some(half) = UnitVec3::normalize(*wo + *wi) else {
+                    return Rgb::BLACK;
+                };
+                let cos = wo.dot(*half);
+                diffuse * entering(dielectric, cos)
+                    + schlick(f0, f90, cos) * ggx(normal, wo, wi, half, alpha)
+            }
         }
     }
 
-    /// Share of uniform ambient light that is scattered to `wo`, mirrors and glass left out.
+    /// Without what mirror rays see of lights that have a surface, which would count twice.
+    pub fn without_mirrored(mut self) -> Self {
+        if let Glossy::Ggx {
+            f0,
+            f90,
+            unmirrored,
+            ..
+        } = &mut self.glossy
+        {
+            *f0 = *f0 * *unmirrored;
+            *f90 *= *unmirrored;
+        }
+        self
+    }
+
+    /// Share of uniform ambient light that is scattered to `wo`; what rays of their own bring
+    /// from mirrors and glass is left out.
     pub fn ambient(&self, cos_o: f32) -> Rgb {
-        let glossy = match self.glossy {
-            Glossy::None => Rgb::BLACK,
-            Glossy::Phong { reflectance, .. } => reflectance,
-            // What a smooth surface mirrors is seen by rays of its own.
-            Glossy::Ggx { f0, f90, .. } => {
-                let rough = schlick(f0, f90, cos_o) - self.specular.mirrored(cos_o);
-                rough.map(|c| c.max(0.0))
-            }
-        };
-        self.diffuse + glossy
+        match self.glossy {
+            Glossy::None => self.diffuse,
+            Glossy::Phong { reflectance, .. } => self.diffuse + reflectance,
+            Glossy::Ggx {
+                f0,
+                f90,
+                dielectric,
+                unmirrored,
+                ..
+            } => self.diffuse * entering(dielectric, cos_o) + schlick(f0, f90, cos_o) * unmirrored,
+        }
     }
 }
 
@@ -122,22 +166,25 @@ fn schlick(f0: Rgb, f90: f32, cos: f32) -> Rgb {
     f0.lerp(Rgb::splat(f90), schlick_weight(cos))
 }
 
-fn phong_lobe(normal: Vec3, wo: Vec3, wi: Vec3, exponent: f32) -> f32 {
+/// Share that passes a dielectric of reflectance `f0` and `f90` to the layer below.
+fn entering([f0, f90]: [f32; 2], cos: f32) -> f32 {
+    1.0 - (f0 + (f90 - f0) * schlick_weight(cos))
+}
+
+fn phong_lobe(normal: UnitVec3, wo: UnitVec3, wi: UnitVec3, exponent: f32) -> f32 {
     // 1 - cos, without the cancellation that would decide the value at large exponents.
-    let deviation = 0.5 * (reflect(wi, normal) - wo).length_squared();
+    let deviation = 0.5 * (reflect(*wi, *normal) - *wo).length_squared();
     if deviation >= 1.0 {
         return 0.0;
     }
     (exponent + 2.0) / (2.0 * PI) * (exponent * (-deviation).ln_1p()).exp()
 }
 
-fn ggx(normal: Vec3, wo: Vec3, wi: Vec3, f0: Rgb, f90: f32, alpha: f32) -> Rgb {
-    let Some(half) = UnitVec3::normalize(wo + wi) else {
-        return Rgb::BLACK;
-    };
-    let (cos_o, cos_i) = (normal.dot(wo), normal.dot(wi));
+/// Distribution times visibility: the lobe without its Fresnel factor.
+fn ggx(normal: UnitVec3, wo: UnitVec3, wi: UnitVec3, half: UnitVec3, alpha: f32) -> f32 {
+    let (cos_o, cos_i) = (normal.dot(*wo), normal.dot(*wi));
     if cos_o <= 0.0 || cos_i <= 0.0 {
-        return Rgb::BLACK;
+        return 0.0;
     }
     let a2 = alpha * alpha;
     let cos_h = normal.dot(*half);
@@ -149,6 +196,5 @@ fn ggx(normal: Vec3, wo: Vec3, wi: Vec3, f0: Rgb, f90: f32, alpha: f32) -> Rgb {
     // (Heitz 2014, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs").
     let lambda_o = cos_i * (a2 + (1.0 - a2) * cos_o * cos_o).sqrt();
     let lambda_i = cos_o * (a2 + (1.0 - a2) * cos_i * cos_i).sqrt();
-    let visibility = 0.5 / (lambda_o + lambda_i);
-    schlick(f0, f90, wo.dot(*half)) * (distribution * visibility)
+    distribution * 0.5 / (lambda_o + lambda_i)
 }

@@ -5,11 +5,14 @@ use crate::math::Vec3;
 /// Share of unpolarised light that a smooth dielectric border reflects (Fresnel's equations).
 ///
 /// `cos_i` is the cosine of incidence in `[0, 1]`; `eta` the index of the side that the light
-/// goes to over the index of the side it comes from. 1 at total internal reflection, and exactly
-/// 0 where the indices are equal.
+/// goes to over the index of the side it comes from. 1 at total internal reflection and where
+/// `eta` is 0 or infinite, and exactly 0 where the indices are equal.
 pub fn fresnel_dielectric(cos_i: f32, eta: f32) -> f32 {
     if eta == 1.0 {
         return 0.0;
+    }
+    if eta.is_infinite() {
+        return 1.0;
     }
     let Some(cos_t) = cos_transmitted(cos_i, eta) else {
         return 1.0;
@@ -22,6 +25,7 @@ pub fn fresnel_dielectric(cos_i: f32, eta: f32) -> f32 {
 /// Cosine of the refracted direction; `None` at total internal reflection.
 fn cos_transmitted(cos_i: f32, eta: f32) -> Option<f32> {
     let sin2_t = (1.0 - cos_i * cos_i).max(0.0) / (eta * eta);
+    // Not a number, for light along the normal into index 0, is total reflection too.
     (sin2_t < 1.0).then(|| (1.0 - sin2_t).sqrt())
 }
 

@@ -61,8 +61,8 @@ const MIN_ALPHA: f32 = 1e-4;
 impl MetallicRoughness {
     /// How it scatters light where `lookup` is.
     ///
-    /// Diffuse base under GGX, as appendix B of the glTF 2.0 specification has it. Rough
-    /// reflection of the surroundings is left to `ambient`; smooth surfaces mirror them.
+    /// Diffuse base under GGX, after appendix B of the glTF 2.0 specification. Rough reflection
+    /// of the surroundings is left to `ambient`; smooth surfaces mirror them.
     pub fn bsdf(&self, lookup: &Lookup) -> Bsdf {
         let base = lookup.rgb(&self.base_color) * lookup.vertex_rgb();
         let metallic = lookup.scalar(&self.metallic).clamp(0.0, 1.0);
@@ -75,20 +75,22 @@ impl MetallicRoughness {
         let f90 = strength + (1.0 - strength) * metallic;
 
         let transmission = lookup.scalar(&self.transmission).clamp(0.0, 1.0);
-        let transmit = base * ((1.0 - metallic) * transmission);
-        let mirror = (1.0 - roughness / MIRROR_ROUGHNESS).max(0.0).powi(2);
-        // Glass gets its reflection from Fresnel's equations on what it transmits.
-        let mirror = mirror * (1.0 - (1.0 - metallic) * transmission);
-        let alpha = (roughness * roughness).max(MIN_ALPHA);
-        // Energy that Fresnel reflects does not reach the diffuse layer below.
-        let entering = 1.0 - dielectric.max_channel();
+        let glass = (1.0 - metallic) * transmission;
+        // Glass gets its mirror image from Fresnel's equations on what it transmits.
+        let mirror = (1.0 - glass) * (1.0 - roughness / MIRROR_ROUGHNESS).max(0.0).powi(2);
         Bsdf {
-            diffuse: base * ((1.0 - metallic) * (1.0 - transmission) * entering),
-            glossy: Glossy::Ggx { f0, f90, alpha },
+            diffuse: base * ((1.0 - metallic) * (1.0 - transmission)),
+            glossy: Glossy::Ggx {
+                f0,
+                f90,
+                alpha: (roughness * roughness).max(MIN_ALPHA),
+                dielectric: [dielectric.max_channel(), strength],
+                unmirrored: 1.0 - glass - mirror,
+            },
             specular: Specular {
                 reflect: f0 * mirror,
                 reflect_grazing: (Rgb::splat(f90) - f0) * mirror,
-                transmit,
+                transmit: base * glass,
                 index_of_refraction: self.index_of_refraction,
                 is_thin: self.thickness.factor == 0.0,
             },
