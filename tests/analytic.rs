@@ -47,11 +47,13 @@ fn a_grazing_point_light_keeps_its_cosine() {
 #[test]
 fn a_disk_light_has_its_closed_form() {
     for pattern in [Pattern::Jittered, Pattern::Random, Pattern::Sobol] {
-        for (radius, height, offset) in [(0.5f32, 2.0f32, 0.0f32), (1.5, 1.0, 0.0), (1.0, 1.5, 2.5)] {
+        for (radius, height, offset) in [(0.5f32, 2.0f32, 0.0f32), (1.5, 1.0, 0.0), (1.0, 1.5, 2.5)]
+        {
             let mut scene = plane();
             add_light(&mut scene, disk(radius, height, offset, 1));
             let got = irradiance(&scene, Vec3::ZERO, &settings(1 << 16, pattern));
-            let expected = 3.0 * disk_irradiance(radius.into(), height.into(), offset.into()) as f32;
+            let expected =
+                3.0 * disk_irradiance(radius.into(), height.into(), offset.into()) as f32;
             let tolerance = if pattern == Pattern::Random {
                 2e-2
             } else {

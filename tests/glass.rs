@@ -154,7 +154,13 @@ fn total_reflection_shows_the_inside_alone() {
         let (direction, lateral) = toward(degrees);
         let mut scene = scene.clone();
         let place = eye + Vec3::X * lateral;
-        add_quad(&mut scene, place, Vec3::Z * 0.3, Vec3::X * 0.3, lamp.clone());
+        add_quad(
+            &mut scene,
+            place,
+            Vec3::Z * 0.3,
+            Vec3::X * 0.3,
+            lamp.clone(),
+        );
         let got = radiance(&scene, eye, direction, &settings).g;
         assert_close(got, 5.0, 1e-5, &format!("{degrees} degrees"));
     }
@@ -162,7 +168,13 @@ fn total_reflection_shows_the_inside_alone() {
         let (direction, lateral) = toward(degrees);
         let mut scene = scene.clone();
         let place = eye + Vec3::X * lateral - Vec3::Y * 0.5;
-        add_quad(&mut scene, place, Vec3::Z * 0.9, Vec3::X * 0.9, lamp.clone());
+        add_quad(
+            &mut scene,
+            place,
+            Vec3::Z * 0.9,
+            Vec3::X * 0.9,
+            lamp.clone(),
+        );
         let got = radiance(&scene, eye, direction, &settings).g;
         let reflected = fresnel(f64::from(degrees).to_radians(), 1.0 / 1.5) as f32;
         let expected = 100.0 * (1.0 - reflected) + 5.0 * reflected;

@@ -12,9 +12,7 @@ use halfshade::prepare::{PreparedScene, prepare};
 use halfshade::render::{Job, render};
 use halfshade::sampling::Sampler;
 use halfshade::scene::{Instance, Mesh, MeshId, Placed, Scene, Settings};
-use halfshade::texture::{
-    Filter, Image, ImageId, Pixels, Texture, TextureId, TextureRef, Wrap,
-};
+use halfshade::texture::{Filter, Image, ImageId, Pixels, Texture, TextureId, TextureRef, Wrap};
 use std::sync::atomic::AtomicBool;
 
 /// Adds a mesh with its own material.
