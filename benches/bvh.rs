@@ -1,12 +1,13 @@
-//! Builds trees over a mesh and traces ray files: `cargo bench --bench bvh -- [MESH.obj RAYS]`.
+//! Builds trees over a mesh and traces ray files: `cargo bench --bench bvh -- [MESH.obj RAYS [WIDTH]]`.
 //!
+//! WIDTH (`avx512`, `avx2` or `portable`) leaves out all but the default builder in that width.
 //! RAYS is the common beginning of `RAYS_primary.ray`, `_shadow` (any hit), `_diffuse` and
 //! `_random`, in the RAY1 format. Without arguments: a generated terrain and random rays.
 
 use std::hint::black_box;
 use std::time::Instant;
 
-use halfshade::bvh::{Builder, Bvh, TraversalCounts, Width};
+use halfshade::bvh::{Builder, Bvh, Hit, TraversalCounts, Width};
 use halfshade::math::{Ray, Vec3};
 
 struct RaySet {
@@ -22,8 +23,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .skip(1)
         .filter(|a| a != "--bench")
         .collect();
+    let only_width = arguments.get(2);
     let (positions, indices, sets) = match arguments.as_slice() {
-        [mesh, rays] => {
+        [mesh, rays, ..] => {
             let (positions, indices) = read_obj(&std::fs::read_to_string(mesh)?)?;
             (positions, indices, read_sets(rays)?)
         }
@@ -34,6 +36,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     for builder in [Builder::Median, Builder::Balanced] {
         for width in Width::available() {
+            let name = format!("{width:?}").to_lowercase();
+            if only_width.is_some_and(|only| *only != name || builder != Builder::Balanced) {
+                continue;
+            }
             let start = Instant::now();
             let Some(tree) = Bvh::build_with(&positions, &indices, builder, width) else {
                 continue;
@@ -57,12 +63,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 fn measure(tree: &Bvh, set: &RaySet) -> String {
     let any = set.name == "shadow";
     let mut counts = TraversalCounts::default();
-    let mut hits = 0u64;
+    let (mut hits, mut digest) = (0u64, 0u64);
     for ray in &set.rays {
         hits += u64::from(if any {
             tree.any_hit_counted(ray, &mut counts)
         } else {
-            tree.closest_hit_counted(ray, &mut counts).is_some()
+            let hit = tree.closest_hit_counted(ray, &mut counts);
+            digest = mix(digest, hit.as_ref());
+            hit.is_some()
         });
     }
     let mut best = f64::INFINITY;
@@ -79,13 +87,28 @@ fn measure(tree: &Bvh, set: &RaySet) -> String {
     }
     let per_ray = |count: u64| count as f64 / set.rays.len() as f64;
     format!(
-        "{:8} {:6.2} Mrays/s, {:.2} nodes, {:.2} leaves, {:.2} triangles a ray, {hits} hits",
+        "{:8} {:6.2} Mrays/s, {:.2} nodes, {:.2} leaves, {:.2} triangles a ray, {hits} hits, digest {digest:016x}",
         set.name,
         set.rays.len() as f64 / best / 1e6,
         per_ray(counts.nodes),
         per_ray(counts.leaves),
         per_ray(counts.triangles),
     )
+}
+
+/// `digest` with every bit of `hit` in it (FNV-1a): equal where two programs find the same.
+fn mix(digest: u64, hit: Option<&Hit>) -> u64 {
+    let words = hit.map_or([0; 4], |hit| {
+        [
+            hit.t.to_bits(),
+            hit.u.to_bits(),
+            hit.v.to_bits(),
+            hit.triangle,
+        ]
+    });
+    words.into_iter().fold(digest, |digest, word| {
+        (digest ^ u64::from(word)).wrapping_mul(0x0100_0000_01b3)
+    })
 }
 
 /// Processor time of this thread on Linux; wall time elsewhere.

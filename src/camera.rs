@@ -1,6 +1,6 @@
 //! Cameras: from a point on the film to a ray.
 
-use crate::math::{ONE_MINUS_EPSILON, Ray, UVec2, UnitVec3, Vec2, Vec3};
+use crate::math::{Ray, UVec2, UnitVec3, Vec2, Vec3};
 
 /// A camera at a place, looking along a direction.
 #[derive(Clone, Copy, Debug)]
@@ -111,9 +111,10 @@ impl Camera {
     }
 }
 
-/// The film position of sample offset `u` in `[0, 1)²` of `pixel`; stays inside the pixel.
+/// The film position of sample offset `u` in `[0, 1)²` of `pixel`; in single precision an offset
+/// just below 1 may round to the border with the next pixel.
 pub fn film_position(pixel: UVec2, u: Vec2) -> Vec2 {
-    pixel.as_vec2() + u.min(Vec2::splat(ONE_MINUS_EPSILON))
+    pixel.as_vec2() + u
 }
 
 #[cfg(test)]

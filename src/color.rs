@@ -4,12 +4,9 @@ use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Sub};
 use std::sync::LazyLock;
 
-use serde::{Deserialize, Serialize};
-
 /// Linear red, green, blue with Rec. 709 primaries. What it measures (reflectance, radiance,
 /// intensity) is said by the name of the field that holds it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(from = "[f32; 3]", into = "[f32; 3]")]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rgb {
     /// Red.
     pub r: f32,

@@ -135,7 +135,7 @@ pub struct Film {
     pub layers: Vec<Vec<[f32; 3]>>,
     /// Samples that were dropped since they are not finite.
     pub rejected: u64,
-    /// The first of them, in the order of pixels.
+    /// The first of them, in the order of tiles.
     pub first_rejected: Option<RejectedSample>,
     /// Rays that were traced.
     pub rays: RayCounts,

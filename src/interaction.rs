@@ -1,6 +1,6 @@
 //! Where a ray meets a surface, and the rays that start there.
 
-use crate::math::{Ray, UNIT_ROUNDOFF, UnitVec3, Vec3, gamma, next_down, next_up};
+use crate::math::{Ray, UNIT_ROUNDOFF, UnitVec3, Vec3, gamma};
 
 /// A point on a surface, seen from a direction.
 ///
@@ -59,9 +59,9 @@ impl Interaction {
             let moved = p + o;
             // Round away from the surface, so that the sum does not take the offset back.
             if o > 0.0 {
-                next_up(moved)
+                moved.next_up()
             } else if o < 0.0 {
-                next_down(moved)
+                moved.next_down()
             } else {
                 moved
             }

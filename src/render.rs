@@ -1,6 +1,6 @@
 //! The picture: every pixel's samples, on all cores, in an order that does not matter.
 //!
-//! The film is cut into tiles, and the samples into waves, each four times as large as all before
+//! The film is cut into tiles, and the samples into waves, each three times as large as all before
 //! it: a render that is stopped early has seen the whole picture. A pixel's samples are added in
 //! the order of their indices whatever the threads do, so the same job gives the same bits.
 
@@ -12,7 +12,9 @@ use rayon::prelude::*;
 use crate::camera::{Camera, film_position};
 use crate::color::Rgb;
 use crate::film::{Film, Pixel, RayCounts, Rect, RejectedSample};
-use crate::integrate::{Integrator, RayKind, RayLog, RayRecord, View, ViewKind, integrator};
+use crate::integrate::{
+    FirstSurface, Integrator, RayKind, RayLog, RayRecord, ViewKind, integrator,
+};
 use crate::math::{DVec3, Ray, UVec2, Vec2, Vec3};
 use crate::prepare::PreparedScene;
 use crate::sampling::Sampler;
@@ -34,6 +36,16 @@ pub struct Job<'a> {
     pub crop: Rect,
     /// Layers beside the picture.
     pub layers: Vec<ViewKind>,
+}
+
+impl Job<'_> {
+    /// The most memory that [`render`] takes for the film, bytes: tiles and film are there
+    /// together while they are put together.
+    pub fn memory_bytes(&self) -> u64 {
+        let pixel = 2 * size_of::<Pixel>();
+        let layer = size_of::<[f64; 3]>() + size_of::<[f32; 3]>();
+        self.crop.area() * (pixel + self.layers.len() * layer) as u64
+    }
 }
 
 /// How far a render has come.
@@ -135,9 +147,12 @@ impl Tile {
 
     /// Adds what the layers show along `ray` to the tile's pixel number `i`.
     fn add_layers(&mut self, job: &Job, i: usize, ray: &Ray) {
-        let scene = job.scene;
+        if job.layers.is_empty() {
+            return;
+        }
+        let first = FirstSurface::along(job.scene, ray);
         for (layer, &kind) in self.layers.iter_mut().zip(&job.layers) {
-            for (sum, value) in layer[i].iter_mut().zip(View { scene, kind }.value(ray)) {
+            for (sum, value) in layer[i].iter_mut().zip(first.value(kind)) {
                 *sum += f64::from(value);
             }
         }

@@ -4,8 +4,6 @@
 //! one use of a texture by a material, with its set of texture coordinates. Whether 8-bit
 //! pixels are sRGB or plain numbers is the user's to know and is said by [`Encoding`].
 
-use serde::{Deserialize, Serialize};
-
 use crate::color::{Rgb, srgb8_to_linear};
 use crate::math::{Affine2, Vec2};
 
@@ -49,8 +47,7 @@ pub enum Encoding {
 }
 
 /// What lies beyond the unit square of texture coordinates.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wrap {
     /// The image again.
     #[default]
@@ -62,8 +59,7 @@ pub enum Wrap {
 }
 
 /// What lies between the centres of pixels.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Filter {
     /// The nearest pixel.
     Nearest,

@@ -47,8 +47,48 @@ fn an_arrow_that_points_back_is_found() {
 }
 
 #[test]
+fn an_arrow_through_super_is_found() {
+    let order = ["math", "scene", "import", "bvh"].map(String::from);
+    let text = "//! A part.\nuse super::super::super::bvh::Bvh;\nuse super::super::bvh_like;\n\
+                use super::super::super::{math, bvh::Builder};\n\
+                mod tests {\n    use super::super::super::bvh_like;\n    \
+                use super::super::super::super::bvh;\n}\nuse super::super::super::math::Vec3;\n";
+    let source = |path: &str| Source {
+        path: path.into(),
+        module: "import".into(),
+        text: text.into(),
+    };
+    let fault = |line| {
+        format!(
+            "src/import/gltf/part.rs:{line}: import -> bvh, which stands below it in src/lib.rs"
+        )
+    };
+    assert_eq!(
+        faults_of_order(&source("src/import/gltf/part.rs"), &order),
+        [2, 4, 7].map(fault)
+    );
+    // One folder further down none of them leads out of the module.
+    assert!(
+        faults_of_order(&source("src/import/gltf/a/part.rs"), &order)
+            .iter()
+            .all(|fault| fault.contains("part.rs:7"))
+    );
+    assert_eq!(depth("src/lib.rs"), 0);
+    assert_eq!(depth("src/import/mod.rs"), 1);
+    assert_eq!(depth("src/import/gltf/part.rs"), 3);
+}
+
+#[test]
 fn only_the_program_prints() {
-    let printers = ["println!", "eprintln!", "print!", "eprint!", "dbg!"];
+    let printers = [
+        "println!",
+        "eprintln!",
+        "print!",
+        "eprint!",
+        "dbg!",
+        "stdout()",
+        "stderr()",
+    ];
     assert_nowhere("the library prints", |source, code| {
         !is_program(source) && printers.iter().any(|printer| has_word(code, printer))
     });
@@ -122,7 +162,7 @@ fn faults_of_order(source: &Source, order: &[String]) -> Vec<String> {
         return Vec::new();
     };
     let mut faults = Vec::new();
-    for (line, used) in used_modules(&source.text) {
+    for (line, used) in used_modules(source) {
         let (path, module) = (&source.path, &source.module);
         match place(&used) {
             Some(used_place) if used_place <= own => {}
@@ -137,22 +177,57 @@ fn faults_of_order(source: &Source, order: &[String]) -> Vec<String> {
     faults
 }
 
-/// The line and the first name of every path that starts with `crate::`, lists in braces taken
-/// apart.
-fn used_modules(text: &str) -> Vec<(usize, String)> {
-    let code = without_comments(text);
+/// The line and the first name of every path that starts at the root of the library, with `crate::`
+/// or as many `super::` as lead there; lists in braces are taken apart.
+fn used_modules(source: &Source) -> Vec<(usize, String)> {
+    let code = without_comments(&source.text);
     let mut used = Vec::new();
-    for (at, found) in code.match_indices("crate::") {
-        if code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == '$') {
+    let starts = code
+        .match_indices("crate::")
+        .chain(code.match_indices("super::"));
+    for (at, found) in starts {
+        let before = &code[..at];
+        if before.ends_with(|c: char| c.is_alphanumeric() || "_$:".contains(c)) {
             continue;
         }
-        let line = 1 + code[..at].matches('\n').count();
-        let rest = &code[at + found.len()..];
-        for name in first_names(rest) {
-            used.push((line, name));
+        let mut rest = &code[at + found.len()..];
+        if found == "super::" {
+            let mut levels = 1;
+            while let Some(further) = rest.strip_prefix("super::") {
+                (rest, levels) = (further, levels + 1);
+            }
+            if levels != depth(&source.path) + inline_modules(before) {
+                continue;
+            }
+        }
+        let line = 1 + before.matches('\n').count();
+        used.extend(first_names(rest).into_iter().map(|name| (line, name)));
+    }
+    used.sort();
+    used
+}
+
+/// How many modules a file is below the root: `src/a/b.rs` and `src/a/b/mod.rs` are 2.
+fn depth(path: &str) -> usize {
+    let parts = path.trim_end_matches("/mod.rs").split('/').count() - 1;
+    if path == "src/lib.rs" { 0 } else { parts }
+}
+
+/// How many `mod name {` are open at the end of `code`, which is laid out by rustfmt: a module ends
+/// where a brace stands alone below its beginning.
+fn inline_modules(code: &str) -> usize {
+    let mut open: Vec<String> = Vec::new();
+    for line in code.lines() {
+        let statement = line.trim_start();
+        let indent = &line[..line.len() - statement.len()];
+        let is_module = statement.starts_with("mod ") || statement.contains(" mod ");
+        if is_module && statement.ends_with('{') {
+            open.push(format!("{indent}}}"));
+        } else if open.last().is_some_and(|end| end == line) {
+            open.pop();
         }
     }
-    used
+    open.len()
 }
 
 /// `a::b` names `a`; `{a::b, c::{d, e}}` names `a` and `c`.

@@ -78,38 +78,46 @@ impl Caster {
     /// `None` where `ray` is not finite, has no direction, or leaves `bounds` behind.
     ///
     /// `slack` is a distance in space by which boxes count as larger; finite.
+    #[inline(always)]
     pub fn new(ray: &Ray, bounds: &Aabb, slack: f32) -> Option<Self> {
         let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
-        let size = direction.map(f32::abs);
+        let size = ray.direction.abs().to_array();
         let main = longest(size);
         let finite = ray.origin.is_finite() && ray.direction.is_finite();
         if !finite || size[main] == 0.0 || bounds.is_empty() {
             return None;
         }
         let axes = [(main + 1) % 3, (main + 2) % 3, main];
-        let exact = ExactRay::new(axes.map(|k| origin[k]), axes.map(|k| direction[k]));
-        let coordinates = [ray.origin, bounds.min, bounds.max];
-        let coordinate = coordinates.map(|p| p.abs().max_element());
-        let coordinate = coordinate.into_iter().fold(0.0, f32::max);
-        let to_distance = unit_of_direction(size[main], coordinate);
-        let scaled = direction.map(|d| (f64::from(d) / to_distance) as f32);
-        let exit = exit_distance(origin[main], scaled[main], bounds, main, slack)?;
+        let turned = |v: [f32; 3]| [v[axes[0]], v[axes[1]], v[main]];
+        let exact = ExactRay::new(turned(origin), turned(direction));
+        let coordinate = ray.origin.abs().max(bounds.min.abs()).max(bounds.max.abs());
+        let to_distance = unit_of_direction(size[main], coordinate.max_element());
+        let scaled = match to_distance {
+            1.0 => direction,
+            unit => per_axis(|k| (f64::from(direction[k]) / unit) as f32),
+        };
+        let way = way_out(origin[main], scaled[main], bounds, main, slack)?;
 
         let least = LEAST_SLOPE * scaled[main].abs();
-        let inverse = scaled.map(|d| 1.0 / d.abs().max(least).copysign(d));
-        let product = [0, 1, 2].map(|k| origin[k] * inverse[k]);
-        let pad = [0, 1, 2].map(|k| {
-            let tilt = if scaled[k].abs() < least { exit } else { 0.0 };
-            6.0 * UNIT_ROUNDOFF * product[k].abs() + slack * inverse[k].abs() + tilt + TINY
-        });
+        let inverse = per_axis(|k| 1.0 / scaled[k].abs().max(least).copysign(scaled[k]));
+        let product = per_axis(|k| origin[k] * inverse[k]);
+        let mut pad =
+            per_axis(|k| 6.0 * UNIT_ROUNDOFF * product[k].abs() + slack * inverse[k].abs() + TINY);
+        for k in 0..3 {
+            // Rare, which saves the others the division.
+            if scaled[k].abs() < least {
+                pad[k] += (way / f64::from(scaled[main].abs()) * (1.0 + RANGE_PAD)) as f32;
+            }
+        }
+        let shear = exact.shear();
         Some(Self {
             axes,
-            near_side: direction.map(|d| usize::from(d.is_sign_negative())),
+            near_side: per_axis(|k| usize::from(direction[k].is_sign_negative())),
             inverse,
-            near_offset: [0, 1, 2].map(|k| product[k] + pad[k]),
-            far_offset: [0, 1, 2].map(|k| product[k] - pad[k]),
-            origin: axes.map(|k| origin[k]),
-            shear: exact.shear().map(|s| s as f32),
+            near_offset: per_axis(|k| product[k] + pad[k]),
+            far_offset: per_axis(|k| product[k] - pad[k]),
+            origin: turned(origin),
+            shear: [shear[0] as f32, shear[1] as f32],
             exact,
             main_direction: f64::from(direction[main]),
             to_distance,
@@ -130,6 +138,13 @@ impl Caster {
     }
 }
 
+/// `array::map` is not inlined everywhere, see `triangle`.
+#[inline(always)]
+fn per_axis<T>(f: impl Fn(usize) -> T) -> [T; 3] {
+    [f(0), f(1), f(2)]
+}
+
+#[inline(always)]
 fn longest(size: [f32; 3]) -> usize {
     let second = usize::from(size[1] > size[0]);
     if size[2] > size[second] { 2 } else { second }
@@ -141,6 +156,7 @@ fn longest(size: [f32; 3]) -> usize {
 /// With coordinates up to 2^50 directions of length 2^-30 to 2^30 have products below 2^121
 /// (reciprocals are at most 2^70). Larger coordinates get a direction of length 2^42, whose
 /// reciprocals are below 1.
+#[inline(always)]
 fn unit_of_direction(length: f32, coordinate: f32) -> f64 {
     const ORDINARY_LENGTH: std::ops::Range<f32> = 1.0 / (1u64 << 30) as f32..(1u64 << 30) as f32;
     const ORDINARY_COORDINATE: f32 = (1u64 << 50) as f32;
@@ -154,22 +170,17 @@ fn unit_of_direction(length: f32, coordinate: f32) -> f64 {
     (f64::from(length).log2().floor() - exponent).exp2()
 }
 
-/// An upper bound of the distance at which the ray leaves the slab of `bounds` along the main
-/// axis; `None` where the slab is behind the origin.
-fn exit_distance(
-    origin: f32,
-    direction: f32,
-    bounds: &Aabb,
-    axis: usize,
-    slack: f32,
-) -> Option<f32> {
+/// How far it is, along the main axis, to where the ray leaves the slab of `bounds`, rounded up;
+/// `None` where the slab is behind the origin.
+#[inline(always)]
+fn way_out(origin: f32, direction: f32, bounds: &Aabb, axis: usize, slack: f32) -> Option<f64> {
     let plane = if direction > 0.0 {
         bounds.max[axis]
     } else {
         bounds.min[axis]
     };
-    let (origin, direction) = (f64::from(origin), f64::from(direction));
+    let origin = f64::from(origin);
     let rounding = f64::from(f32::EPSILON) * origin.abs() + f64::from(slack);
-    let way = (f64::from(plane) - origin) * direction.signum() + rounding;
-    (way >= 0.0).then(|| (way / direction.abs() * (1.0 + RANGE_PAD)) as f32)
+    let way = (f64::from(plane) - origin) * f64::from(direction.signum()) + rounding;
+    (way >= 0.0).then_some(way)
 }

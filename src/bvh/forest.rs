@@ -1,14 +1,14 @@
 //! Instances: trees that stand in the world several times, under a tree of their boxes.
 
 use super::build::build_over_boxes;
-use super::caster::Caster;
+use super::caster::{Caster, Window};
 use super::count::{Counter, Silent};
 use super::hit::{Hit, Search};
 use super::layout::{ChildRef, Node};
 use super::simd::{Job, Lanes, Level};
-use super::traverse::{Next, Visitor, walk};
+use super::traverse::{Visitor, walk};
 use super::tree::Bvh;
-use crate::math::{Aabb, DAffine3, DVec3, Ray, UNIT_ROUNDOFF, Vec3, next_down, next_up};
+use crate::math::{Aabb, DAffine3, DVec3, Ray, UNIT_ROUNDOFF, Vec3};
 
 /// What rays are traced through: one tree as it is, or instances of several.
 #[derive(Debug)]
@@ -270,8 +270,8 @@ fn transformed(bounds: &Aabb, to_world: &DAffine3) -> Aabb {
     let low = corners.into_iter().fold(DVec3::INFINITY, DVec3::min);
     let high = corners.into_iter().fold(DVec3::NEG_INFINITY, DVec3::max);
     Aabb {
-        min: Vec3::from(low.as_vec3().to_array().map(next_down)),
-        max: Vec3::from(high.as_vec3().to_array().map(next_up)),
+        min: Vec3::from(low.as_vec3().to_array().map(f32::next_down)),
+        max: Vec3::from(high.as_vec3().to_array().map(f32::next_up)),
     }
 }
 
@@ -312,7 +312,7 @@ where
             accept,
             counter,
         } = self;
-        let window = caster.window(search);
+        let mut window = caster.window(search);
         let mut instances = Instances::<ANY, A> {
             forest,
             ray,
@@ -324,7 +324,7 @@ where
         if forest.nodes.is_empty() {
             for leaf in 0..forest.leaves.len() {
                 // At most one: where there are two there is a node.
-                instances.visit(ChildRef::leaf(leaf, 1), counter);
+                instances.visit(ChildRef::leaf(leaf, 1), &mut window, counter);
             }
         } else {
             walk::<S, WIDTH, C>(&forest.nodes, caster, window, counter, instances);
@@ -348,7 +348,7 @@ where
     C: Counter,
 {
     #[inline(always)]
-    fn visit(&mut self, leaf: ChildRef, counter: &mut C) -> Next {
+    fn visit(&mut self, leaf: ChildRef, window: &mut Window, counter: &mut C) -> bool {
         let index = self.forest.leaves[leaf.index()];
         let instance = &self.forest.instances[index as usize];
         let (ray, slack, accept) = (self.ray, self.slack, self.accept);
@@ -357,10 +357,7 @@ where
         if let Some(caster) = Caster::new(&instance.ray(ray), &tree.bounds(), 0.0) {
             tree.cast::<ANY, C>(&caster, self.search, index, &accept, counter);
         }
-        if ANY && self.search.hit.is_some() {
-            Next::Stop
-        } else {
-            Next::GoOn(self.caster.window(self.search))
-        }
+        *window = self.caster.window(self.search);
+        ANY && self.search.hit.is_some()
     }
 }

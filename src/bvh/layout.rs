@@ -148,7 +148,14 @@ impl<const W: usize> Block<W> {
     /// The corners of the triangle in `lane`, their coordinates in the order `axes`.
     #[inline(always)]
     pub fn corners_of(&self, lane: usize, axes: [usize; 3]) -> [[f32; 3]; 3] {
-        [0, 1, 2].map(|corner| axes.map(|axis| self.corners[corner][axis][lane]))
+        // No `array::map`, see `triangle`.
+        let [a, b, c] = &self.corners;
+        let [x, y, z] = axes;
+        [
+            [a[x][lane], a[y][lane], a[z][lane]],
+            [b[x][lane], b[y][lane], b[z][lane]],
+            [c[x][lane], c[y][lane], c[z][lane]],
+        ]
     }
 }
 

@@ -10,14 +10,6 @@ use super::layout::{Block, ChildRef, Node};
 use super::simd::{Lanes, Stack};
 use crate::math::UNIT_ROUNDOFF;
 
-/// Whether the search goes on after a leaf.
-pub(super) enum Next {
-    /// With the window that is left.
-    GoOn(Window),
-    /// It is over.
-    Stop,
-}
-
 /// A ray's constants for the box test, in vectors.
 struct BoxTest<S> {
     inverse: [S; 3],
@@ -62,9 +54,10 @@ impl<S> BoxTest<S> {
 
 /// What is done at a leaf.
 pub(super) trait Visitor<C> {
-    /// Looks at `leaf` and says how to go on. Must be `#[inline(always)]`: a function of its
-    /// own, such as a closure may become, would lack the instruction set of the walk.
-    fn visit(&mut self, leaf: ChildRef, counter: &mut C) -> Next;
+    /// Looks at `leaf`, narrows `window` to what may still hold a better hit, and says whether
+    /// the search is over. Must be `#[inline(always)]`: a function of its own, such as a
+    /// closure may become, would lack the instruction set of the walk.
+    fn visit(&mut self, leaf: ChildRef, window: &mut Window, counter: &mut C) -> bool;
 }
 
 /// Walks from the first of `nodes` to the leaves that may hold a better hit, nearest first.
@@ -84,9 +77,8 @@ pub(super) fn walk<S, const W: usize, C: Counter>(
     let mut current = ChildRef::node(0);
     loop {
         if current.is_leaf() {
-            match visitor.visit(current, counter) {
-                Next::GoOn(left) => window = left,
-                Next::Stop => return,
+            if visitor.visit(current, &mut window, counter) {
+                return;
             }
         } else {
             counter.node();
@@ -228,9 +220,10 @@ fn splat<S: Lanes<W>, const W: usize>(v: [f32; 3]) -> [S; 3] {
     [S::splat(v[0]), S::splat(v[1]), S::splat(v[2])]
 }
 
-/// Looks at the first `count` triangles of a block for hits that are better than the best.
+/// Looks at the first `count` triangles of a block for hits that are better than the best, and
+/// narrows `window` to them; returns whether the search is over.
 ///
-/// With `ANY` the first hit that `accept` likes ends the search.
+/// With `ANY` the first hit that `accept` likes ends it.
 #[inline(always)]
 #[allow(clippy::too_many_arguments)] // the state of one loop, kept in registers
 pub(super) fn search_block<S, const W: usize, const ANY: bool, C: Counter>(
@@ -239,19 +232,16 @@ pub(super) fn search_block<S, const W: usize, const ANY: bool, C: Counter>(
     ray: &Caster,
     filter: &Filter<S>,
     search: &mut Search,
+    window: &mut Window,
     instance: u32,
     accept: &impl Fn(&Hit) -> bool,
     counter: &mut C,
-) -> Next
+) -> bool
 where
     S: Lanes<W>,
 {
     counter.leaf();
-    let window = ray.window(search);
-    let mut lanes = filter.test(block, &window) & (u32::MAX >> (32 - count));
-    if lanes == 0 {
-        return Next::GoOn(window);
-    }
+    let mut lanes = filter.test(block, window) & (u32::MAX >> (32 - count));
     while lanes != 0 {
         let lane = lanes.trailing_zeros() as usize % W;
         lanes &= lanes - 1;
@@ -274,9 +264,10 @@ where
         if accept(&hit) {
             search.keep(hit);
             if ANY {
-                return Next::Stop;
+                return true;
             }
+            *window = ray.window(search);
         }
     }
-    Next::GoOn(ray.window(search))
+    false
 }

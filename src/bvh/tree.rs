@@ -1,13 +1,13 @@
 //! A tree of one mesh, in the width that suits the processor.
 
 use super::build::{Builder, build};
-use super::caster::Caster;
+use super::caster::{Caster, Window};
 use super::count::{Counter, Silent, TraversalCounts};
 use super::hit::{Hit, Search};
 use super::layout::{Block, ChildRef, Node, Tree};
 use super::simd::{Job, Lanes, Level};
 use super::stats::TreeStats;
-use super::traverse::{Filter, Next, Visitor, search_block, walk};
+use super::traverse::{Filter, Visitor, search_block, walk};
 use crate::math::{Aabb, Ray, Vec3};
 
 /// Which vectors a tree is laid out for and traced with. Hits are the same with all.
@@ -215,7 +215,7 @@ where
             accept,
             counter,
         } = self;
-        let window = ray.window(search);
+        let mut window = ray.window(search);
         let mut blocks = Blocks::<ANY, W, S, A> {
             tree,
             ray,
@@ -232,7 +232,7 @@ where
         for block in 0..tree.blocks.len() {
             let child = ChildRef::leaf(block, left.min(W));
             left -= left.min(W);
-            if matches!(blocks.visit(child, counter), Next::Stop) {
+            if blocks.visit(child, &mut window, counter) {
                 return;
             }
         }
@@ -256,13 +256,14 @@ where
     C: Counter,
 {
     #[inline(always)]
-    fn visit(&mut self, leaf: ChildRef, counter: &mut C) -> Next {
+    fn visit(&mut self, leaf: ChildRef, window: &mut Window, counter: &mut C) -> bool {
         search_block::<S, W, ANY, C>(
             &self.tree.blocks[leaf.index()],
             leaf.count(),
             self.ray,
             &self.filter,
             self.search,
+            window,
             self.instance,
             self.accept,
             counter,

@@ -6,6 +6,9 @@
 //! functions then tell whether the ray passes inside. Two triangles that share an edge compute
 //! the same edge function up to its sign, so a ray cannot slip between them. Everything faster
 //! in the tracing core only has to let through what this test accepts.
+//!
+//! What runs for each triangle is `#[inline(always)]` and free of `array::map`, which the
+//! compiler leaves as a call (with its copies) inside of functions of another instruction set.
 
 /// Relative tolerance of [`ExactRay::confirms`]: `t` is rounded to `f32`, which moves the
 /// point by at most half of this, and the f64 arithmetic by much less.
@@ -32,16 +35,18 @@ pub(super) struct ExactRay {
 impl ExactRay {
     /// `origin` and `direction` in the caster's order of axes; the last component of
     /// `direction` is the largest and not zero.
+    #[inline(always)]
     pub fn new(origin: [f32; 3], direction: [f32; 3]) -> Self {
-        let direction = direction.map(f64::from);
+        let direction = widen(direction);
         Self {
-            origin: origin.map(f64::from),
+            origin: widen(origin),
             direction,
             shear: [direction[0] / direction[2], direction[1] / direction[2]],
         }
     }
 
     /// The slopes along the main axis, in `[-1, 1]`.
+    #[inline(always)]
     pub fn shear(&self) -> [f64; 2] {
         self.shear
     }
@@ -50,8 +55,11 @@ impl ExactRay {
     ///
     /// `corners` are in the caster's order of axes. Edges and corners belong to the triangle.
     /// `None` also where the triangle has no area as seen along the ray, beyond rounding.
+    #[inline(always)]
     pub fn cross(&self, corners: &[[f32; 3]; 3]) -> Option<Crossing> {
-        let [a, b, c] = corners.map(|p| self.shear_point(p));
+        let a = self.shear_point(corners[0]);
+        let b = self.shear_point(corners[1]);
+        let c = self.shear_point(corners[2]);
         let [reach, error] = reach_and_edge_error(&[a, b, c]);
         let mut weights = edge_functions(a, b, c);
         if (weights[0] + weights[1] + weights[2]).abs() < CANCELLED * error {
@@ -63,7 +71,9 @@ impl ExactRay {
         if !(area.abs() > error && weights.iter().all(|&w| turn * w >= -error)) {
             return None;
         }
-        let [u, v, w] = weights.map(|w| (turn * w).max(0.0));
+        let u = (turn * weights[0]).max(0.0);
+        let v = (turn * weights[1]).max(0.0);
+        let w = (turn * weights[2]).max(0.0);
         let area = u + v + w;
         let mut depth = u * a[2] + v * b[2] + w * c[2];
         if depth.abs() <= 8.0 * f64::EPSILON * reach * area {
@@ -93,6 +103,7 @@ impl ExactRay {
     /// True of every ordinary hit. It fails only where the origin is closer to the plane than
     /// f64 can tell from the far ends of the triangle; demanding it makes the box culling of
     /// [`Caster`] exact by construction, for it bounds every hit by the box of its triangle.
+    #[inline(always)]
     fn confirms(&self, corners: &[[f32; 3]; 3], t: f32) -> bool {
         let [a, b, c] = corners;
         (0..3).all(|k| {
@@ -106,6 +117,11 @@ impl ExactRay {
     }
 }
 
+#[inline(always)]
+fn widen(v: [f32; 3]) -> [f64; 3] {
+    [f64::from(v[0]), f64::from(v[1]), f64::from(v[2])]
+}
+
 /// The largest main coordinate Z, and a bound, with room, of what rounding does to an edge
 /// function of sheared corners: with R the largest sheared coordinate, shearing moves a corner
 /// by up to 2^-52 (R + Z), and the products lose 2^-52 R².
@@ -114,8 +130,8 @@ impl ExactRay {
 /// where the argument of shared edges does not hold.
 #[inline(always)]
 fn reach_and_edge_error(corners: &[[f64; 3]; 3]) -> [f64; 2] {
-    let [a, b, c] = corners.map(|p| p.map(f64::abs));
-    let largest = |k: usize| a[k].max(b[k]).max(c[k]);
+    let [a, b, c] = corners;
+    let largest = |k: usize| a[k].abs().max(b[k].abs()).max(c[k].abs());
     let (r, z) = (largest(0).max(largest(1)), largest(2));
     [z, 8.0 * f64::EPSILON * r * (r + z)]
 }

@@ -4,28 +4,23 @@ use std::str::FromStr;
 
 use halfshade::film::Rect;
 use halfshade::math::UVec2;
-
-/// The largest width and height of a film, as in scene files.
-const LONGEST_SIDE: u32 = 1 << 16;
-
-/// The most pixels of a film, as in scene files.
-const MOST_PIXELS: u64 = 1 << 28;
+use halfshade::scene::{MAX_PIXELS, MAX_SIDE};
 
 /// `1280x720`.
 pub fn size(text: &str) -> Result<UVec2, String> {
     let wanted = || {
         format!(
-            "a size is like 1280x720, with sides from 1 to {LONGEST_SIDE} \
-             and at most {MOST_PIXELS} pixels"
+            "a size is like 1280x720, with sides from 1 to {MAX_SIDE} \
+             and at most {MAX_PIXELS} pixels"
         )
     };
     let (width, height) = text.split_once(['x', 'X']).ok_or_else(wanted)?;
     let side = |text: &str| {
         let side: Option<u32> = text.trim().parse().ok();
-        side.filter(|side| (1..=LONGEST_SIDE).contains(side))
+        side.filter(|side| (1..=MAX_SIDE).contains(side))
     };
     match (side(width), side(height)) {
-        (Some(width), Some(height)) if u64::from(width) * u64::from(height) <= MOST_PIXELS => {
+        (Some(width), Some(height)) if u64::from(width) * u64::from(height) <= MAX_PIXELS => {
             Ok(UVec2::new(width, height))
         }
         _ => Err(wanted()),

@@ -13,6 +13,7 @@ use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, NamedSource, So
 use thiserror::Error;
 
 use super::Arguments;
+use super::console::printable;
 
 /// Why the program ends without having done what it was asked for.
 #[derive(Debug)]
@@ -50,7 +51,7 @@ impl Failure {
             .find_subcommand(subcommand)
             .cloned()
             .unwrap_or(program);
-        Self::Usage(command.error(ErrorKind::ValueValidation, message))
+        Self::Usage(command.error(ErrorKind::ValueValidation, printable(message)))
     }
 
     /// A job that failed for this reason.
@@ -90,11 +91,15 @@ impl Failure {
     }
 }
 
-impl From<ImportError> for Failure {
-    fn from(error: ImportError) -> Self {
+impl Failure {
+    /// A scene that could not be imported for the subcommand of this name.
+    pub fn of_import(subcommand: &str, error: &ImportError) -> Self {
+        if error.is_argument() {
+            return Self::usage(subcommand, error);
+        }
         let is_folder = error.path.is_dir();
         let help = "a scene is a file: .toml, .gltf, .glb or .obj";
-        let (source_text, place) = source_line(&error).unzip();
+        let (source_text, place) = source_line(error).unzip();
         Self::Job(Box::new(JobError {
             message: error.to_string(),
             help: is_folder.then(|| help.to_owned()),
@@ -104,14 +109,20 @@ impl From<ImportError> for Failure {
     }
 }
 
-/// The text of a small file in which a line is wrong, and where the line is in it.
+/// The text of a small file in which a line is wrong, and where the line is in it; `None` where
+/// that line, or one beside it, which is shown as well, is too long for a terminal.
 fn source_line(error: &ImportError) -> Option<(NamedSource<String>, SourceSpan)> {
     const LARGEST: u64 = 1 << 20;
+    const LONGEST_LINE: usize = 200;
     let number: usize = error.place.as_ref()?.strip_prefix("line ")?.parse().ok()?;
     if fs::metadata(&error.path).ok()?.len() > LARGEST {
         return None;
     }
     let text = fs::read_to_string(&error.path).ok()?;
+    let mut shown = text.lines().skip(number.saturating_sub(2)).take(3);
+    if shown.any(|line| line.len() > LONGEST_LINE) {
+        return None;
+    }
     let before: usize = text
         .split_inclusive('\n')
         .take(number.checked_sub(1)?)
@@ -146,6 +157,7 @@ impl Display for Shown<'_> {
             .with_wrap_lines(false);
         let mut text = String::new();
         handler.render_report(&mut text, self.0)?;
+        let text = printable(text);
         for line in text.lines().map(str::trim_end).filter(|l| !l.is_empty()) {
             writeln!(f, "{}", line.strip_prefix("  ").unwrap_or(line))?;
         }

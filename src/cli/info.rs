@@ -11,8 +11,8 @@ use halfshade::scene::Scene;
 use serde::Serialize;
 
 use super::Failure;
-use super::console::print;
-use super::options::SceneOptions;
+use super::console::{Bytes, print, printable};
+use super::options::SceneArguments;
 
 /// Print what is in a scene or model, and what was ignored or repaired
 #[derive(Args, Debug)]
@@ -22,7 +22,7 @@ Examples:
   halfshade info bunny.obj --json")]
 pub struct InfoOptions {
     #[command(flatten)]
-    scene: SceneOptions,
+    scene: SceneArguments,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -30,17 +30,18 @@ pub struct InfoOptions {
 
 /// Does what the options say.
 pub fn run(options: &InfoOptions) -> Result<(), Failure> {
-    let imported = import(&options.scene.scene, &options.scene.import_options())?;
+    let imported = import(&options.scene.scene, &options.scene.import_options())
+        .map_err(|error| Failure::of_import("info", &error))?;
     let info = Info::of(&imported);
     if options.json {
         let json = serde_json::to_string_pretty(&info).map_err(Failure::job)?;
         print(json)
     } else {
-        print(Table {
+        print(printable(Table {
             name: options.scene.scene.display().to_string(),
             info: &info,
             imported: &imported,
-        })
+        }))
     }
 }
 
@@ -67,7 +68,7 @@ struct Info {
     memory_bytes: usize,
     warnings: Vec<Warning>,
     /// What the scene does not need: nothing is left out yet.
-    left_out: [(); 0],
+    left_out: &'static [&'static str],
 }
 
 #[derive(Debug, Serialize)]
@@ -104,7 +105,7 @@ impl Info {
             }),
             memory_bytes: scene.memory_bytes() + prepared.scene.memory_bytes(),
             warnings: warnings.iter().collect(),
-            left_out: [],
+            left_out: &[],
         }
     }
 }
@@ -139,7 +140,7 @@ impl Display for Table<'_> {
         row("lights", &lights(scene, info.lights))?;
         row("cameras", &cameras(scene, info.cameras))?;
         row("animations", &info.animations)?;
-        row("memory", &Bytes(info.memory_bytes))?;
+        row("memory", &Bytes(info.memory_bytes as u64))?;
         if let Some(added) = added {
             write!(
                 f,
@@ -206,17 +207,7 @@ struct Corner<'a>(&'a [f64; 3]);
 impl Display for Corner<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [x, y, z] = self.0;
-        write!(f, "{x} {y} {z}")
-    }
-}
-
-struct Bytes(usize);
-
-impl Display for Bytes {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.0 {
-            bytes @ ..10_000 => write!(f, "{bytes} bytes"),
-            bytes => write!(f, "{:.1} MiB", bytes as f64 / (1024.0 * 1024.0)),
-        }
+        // Not `{}`, which writes all 300 digits of a number that broken files hold.
+        write!(f, "{x:?} {y:?} {z:?}")
     }
 }

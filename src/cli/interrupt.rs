@@ -1,16 +1,21 @@
 //! Ctrl-C: the first ends the render and saves what there is, the second ends the program.
 
 use std::io::Write;
+use std::process::exit;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+use halfshade::output::discard_unfinished;
 
 /// Whether the user wants the render to end.
 #[derive(Debug, Default)]
 pub struct Interrupt {
     /// Set by the first Ctrl-C.
-    pub is_requested: AtomicBool,
+    is_requested: AtomicBool,
     /// Whether there is a picture to save.
     is_rendering: AtomicBool,
+    /// Whether the picture has all its samples, and is being saved.
+    is_complete: AtomicBool,
 }
 
 impl Interrupt {
@@ -21,23 +26,36 @@ impl Interrupt {
     pub fn listen() -> Arc<Self> {
         let interrupt = Arc::new(Self::default());
         let heard = Arc::clone(&interrupt);
-        let handler = move || {
-            let is_first = !heard.is_requested.swap(true, Ordering::SeqCst);
-            if is_first && heard.is_rendering.load(Ordering::SeqCst) {
-                let _ = writeln!(
-                    std::io::stderr(),
-                    "interrupted: saving what there is; once more to leave without"
-                );
-            } else {
-                std::process::exit(1);
-            }
-        };
-        let _ = ctrlc::set_handler(handler);
+        let _ = ctrlc::set_handler(move || heard.on_ctrl_c());
         interrupt
+    }
+
+    /// Whether a render is to end; for the renderer.
+    pub fn is_requested(&self) -> &AtomicBool {
+        &self.is_requested
     }
 
     /// From now on there is something to save.
     pub fn rendering_begins(&self) {
         self.is_rendering.store(true, Ordering::SeqCst);
+    }
+
+    /// From now on there is nothing left to interrupt but the saving.
+    pub fn rendering_is_complete(&self) {
+        self.is_complete.store(true, Ordering::SeqCst);
+    }
+
+    fn on_ctrl_c(&self) {
+        let is_first = !self.is_requested.swap(true, Ordering::SeqCst);
+        if !is_first || !self.is_rendering.load(Ordering::SeqCst) {
+            discard_unfinished();
+            exit(1);
+        }
+        let message = if self.is_complete.load(Ordering::SeqCst) {
+            "the picture is complete and being saved; once more to leave without"
+        } else {
+            "interrupted: saving what there is; once more to leave without"
+        };
+        let _ = writeln!(std::io::stderr(), "{message}");
     }
 }

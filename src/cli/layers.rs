@@ -22,6 +22,26 @@ pub enum LayerKind {
 }
 
 impl LayerKind {
+    /// All of them.
+    pub const ALL: &[Self] = &[
+        Self::Albedo,
+        Self::Normal,
+        Self::Depth,
+        Self::Variance,
+        Self::Samples,
+    ];
+
+    /// As on the command line and in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Albedo => "albedo",
+            Self::Normal => "normal",
+            Self::Depth => "depth",
+            Self::Variance => "variance",
+            Self::Samples => "samples",
+        }
+    }
+
     /// The view that the renderer has to make for it; `None` where the film has it anyway.
     pub fn view(self) -> Option<ViewKind> {
         match self {
@@ -36,40 +56,47 @@ impl LayerKind {
 /// The values of all layers of a film; layers of a file borrow them.
 pub struct LayerValues {
     picture: Vec<Rgb>,
-    others: Vec<Owned>,
+    others: Vec<(LayerKind, Owned)>,
 }
 
 enum Owned {
-    Colors(&'static str, Vec<Rgb>),
-    Vectors(&'static str, Vec<Vec3>),
-    Numbers(&'static str, &'static str, Vec<f32>),
+    Colors(Vec<Rgb>),
+    Vectors(Vec<Vec3>),
+    Numbers(&'static str, Vec<f32>),
 }
 
 impl LayerValues {
+    /// Bytes of one pixel of the picture and of each of `kinds`, at most: here, and once more as
+    /// channels of a file that is written.
+    pub fn pixel_bytes(kinds: &[LayerKind]) -> u64 {
+        2 * (1 + kinds.len() as u64) * size_of::<Rgb>() as u64
+    }
+
     /// The picture of `film` and `kinds`, the views of which `film` holds in the same order.
     pub fn of_film(film: &Film, kinds: &[LayerKind]) -> Self {
         let mut views = film.layers.iter();
-        let others = kinds.iter().filter_map(|kind| {
+        let others = kinds.iter().filter_map(|&kind| {
             let mut view = || views.next().map(Vec::as_slice);
-            Some(match kind {
+            let values = match kind {
                 LayerKind::Albedo => {
                     let colors = view()?.iter().map(|&c| Rgb::from(c));
-                    Owned::Colors("albedo", colors.collect())
+                    Owned::Colors(colors.collect())
                 }
                 LayerKind::Normal => {
                     let normals = view()?.iter().map(|&n| Vec3::from(n));
-                    Owned::Vectors("normal", normals.collect())
+                    Owned::Vectors(normals.collect())
                 }
                 LayerKind::Depth => {
                     let depths = view()?.iter().map(|d| d[0]);
-                    Owned::Numbers("depth", "Z", depths.collect())
+                    Owned::Numbers("Z", depths.collect())
                 }
-                LayerKind::Variance => Owned::Colors("variance", film.variances()),
+                LayerKind::Variance => Owned::Colors(film.variances()),
                 LayerKind::Samples => {
                     let counts = film.pixels.iter().map(|p| p.count() as f32);
-                    Owned::Numbers("samples", "Y", counts.collect())
+                    Owned::Numbers("Y", counts.collect())
                 }
-            })
+            };
+            Some((kind, values))
         });
         Self {
             others: others.collect(),
@@ -88,18 +115,12 @@ impl LayerValues {
             name: "",
             values: Values::Colors(&self.picture),
         };
-        let others = self.others.iter().map(|layer| match layer {
-            Owned::Colors(name, values) => Layer {
-                name,
-                values: Values::Colors(values),
-            },
-            Owned::Vectors(name, values) => Layer {
-                name,
-                values: Values::Vectors(values),
-            },
-            Owned::Numbers(name, channel, values) => Layer {
-                name,
-                values: Values::Numbers { channel, values },
+        let others = self.others.iter().map(|(kind, values)| Layer {
+            name: kind.name(),
+            values: match values {
+                Owned::Colors(values) => Values::Colors(values),
+                Owned::Vectors(values) => Values::Vectors(values),
+                Owned::Numbers(channel, values) => Values::Numbers { channel, values },
             },
         });
         std::iter::once(picture).chain(others).collect()

@@ -3,7 +3,6 @@
 use halfshade::film::Rect;
 use halfshade::scene::Settings;
 
-use super::names::{self, name_of};
 use super::options::RenderOptions;
 
 /// Keys and values: all that the picture depends on beside the files of the scene.
@@ -16,9 +15,6 @@ pub fn metadata(
     let scene = &options.scene;
     // The name alone: a path says more about the user than about the picture.
     let name = scene.scene.file_name().unwrap_or_default();
-    let pattern = name_of(names::PATTERNS, sampling.pattern);
-    let target = name_of(names::TARGETS, sampling.target);
-    let integrator = name_of(names::INTEGRATORS, settings.integrator);
     let mut metadata = vec![
         ("scene", name.to_string_lossy().into_owned()),
         ("size", format!("{}x{}", settings.size.x, settings.size.y)),
@@ -26,11 +22,11 @@ pub fn metadata(
             "crop",
             format!("{},{},{},{}", crop.x, crop.y, crop.width, crop.height),
         ),
-        ("integrator", integrator.to_owned()),
+        ("integrator", settings.integrator.name().to_owned()),
         ("max_depth", settings.max_depth.to_string()),
         ("samples", sampling.samples_per_pixel().to_string()),
-        ("pattern", pattern.to_owned()),
-        ("target", target.to_owned()),
+        ("pattern", sampling.pattern.name().to_owned()),
+        ("target", sampling.target.name().to_owned()),
         ("seed", sampling.seed.to_string()),
     ];
     if let Some(samples) = settings.light_samples {

@@ -1,64 +1,54 @@
-//! What the choices of options are called.
+//! Options that take one of several names.
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use halfshade::bvh::Builder;
-use halfshade::sampling::{Pattern, Target};
-use halfshade::scene::{IntegratorKind, ToneMap};
 
-use super::layers::LayerKind;
-
-/// The choices of one option, each with its name.
-pub type Names<T> = &'static [(&'static str, T)];
-
-pub const PATTERNS: Names<Pattern> = &[
-    ("grid", Pattern::Grid),
-    ("jittered", Pattern::Jittered),
-    ("random", Pattern::Random),
-    ("sobol", Pattern::Sobol),
-];
-
-pub const TARGETS: Names<Target> = &[("rectangle", Target::Rectangle), ("circle", Target::Circle)];
-
-pub const INTEGRATORS: Names<IntegratorKind> = &[
-    ("whitted", IntegratorKind::Whitted),
-    ("normal", IntegratorKind::Normal),
-    ("depth", IntegratorKind::Depth),
-    ("albedo", IntegratorKind::Albedo),
-];
-
-pub const BUILDERS: Names<Builder> = &[
-    ("balanced", Builder::Balanced),
-    ("median", Builder::Median),
-    ("none", Builder::None),
-];
-
-pub const TONE_MAPS: Names<ToneMap> = &[
-    ("none", ToneMap::None),
-    ("aces", ToneMap::Aces),
-    ("agx", ToneMap::Agx),
-    ("pbr-neutral", ToneMap::PbrNeutral),
-];
-
-pub const LAYERS: Names<LayerKind> = &[
-    ("albedo", LayerKind::Albedo),
-    ("normal", LayerKind::Normal),
-    ("depth", LayerKind::Depth),
-    ("variance", LayerKind::Variance),
-    ("samples", LayerKind::Samples),
-];
-
-/// Reads one of `names`, and lists them in help and errors.
+/// Reads one of `choices` by its name, and lists the names in help and errors.
 pub fn one_of<T: Copy + Send + Sync + 'static>(
-    names: Names<T>,
+    choices: &'static [T],
+    name: fn(T) -> &'static str,
 ) -> impl TypedValueParser<Value = T> {
-    PossibleValuesParser::new(names.iter().map(|(name, _)| *name)).try_map(move |given| {
-        let found = names.iter().find(|(name, _)| *name == given);
-        found.map(|&(_, value)| value).ok_or("not one of them")
-    })
+    PossibleValuesParser::new(choices.iter().map(move |&choice| name(choice))).try_map(
+        move |given| {
+            let mut choices = choices.iter().copied();
+            choices
+                .find(|&choice| name(choice) == given)
+                .ok_or("not one of them")
+        },
+    )
 }
 
-/// What `value` is called.
-pub fn name_of<T: Copy + PartialEq>(names: Names<T>, value: T) -> &'static str {
-    let found = names.iter().find(|(_, named)| *named == value);
-    found.map_or("", |&(name, _)| name)
+/// Reads the name of a builder, and lists the names in help and errors.
+pub fn builder() -> impl TypedValueParser<Value = Builder> {
+    PossibleValuesParser::new(Builder::ALL.map(Builder::name)).try_map(|given| given.parse())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::layers::LayerKind;
+    use halfshade::sampling::{Pattern, Target};
+    use halfshade::scene::{IntegratorKind, ToneMap};
+
+    /// A name that two choices share would hide the second.
+    fn assert_read_back<T: Copy + Send + Sync + PartialEq + std::fmt::Debug>(
+        choices: &'static [T],
+        name: fn(T) -> &'static str,
+    ) {
+        let command = clap::Command::new("test");
+        let parser = one_of(choices, name);
+        for &choice in choices {
+            let read = parser.parse_ref(&command, None, name(choice).as_ref());
+            assert_eq!(read.ok(), Some(choice));
+        }
+    }
+
+    #[test]
+    fn every_choice_is_read_by_its_name() {
+        assert_read_back(Pattern::ALL, Pattern::name);
+        assert_read_back(Target::ALL, Target::name);
+        assert_read_back(IntegratorKind::ALL, IntegratorKind::name);
+        assert_read_back(ToneMap::ALL, ToneMap::name);
+        assert_read_back(LayerKind::ALL, LayerKind::name);
+    }
 }

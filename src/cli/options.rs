@@ -5,9 +5,12 @@ use std::path::PathBuf;
 use clap::Args;
 use halfshade::bvh::Builder;
 use halfshade::film::Rect;
+use halfshade::import::SceneOptions;
 use halfshade::math::UVec2;
 use halfshade::sampling::{Pattern, Target};
-use halfshade::scene::{IntegratorKind, Settings, ToneMap};
+use halfshade::scene::{
+    IntegratorKind, MAX_DEPTH, MAX_LIGHT_SAMPLES, MAX_SAMPLES, Settings, ToneMap,
+};
 
 use super::arguments::{self, SampleId};
 use super::console::Console;
@@ -20,7 +23,8 @@ Examples:
       makes house.png
   halfshade render bunny.obj --size 640x480 --samples 16 -o bunny.png -o bunny.exr
       a model by itself gets a camera and lights, which are printed
-  halfshade render house.toml --set light.0.radius=0 --crop 100,50,64,64 -o part.exr
+  halfshade render scenes/house.toml --set light.0.angle=0 --crop 100,50,64,64 -o part.exr
+      a hard shadow of the sun
 
 Ctrl-C ends the render and saves what there is, with exit status 1.";
 
@@ -29,7 +33,7 @@ Ctrl-C ends the render and saves what there is, with exit status 1.";
 #[command(after_help = EXAMPLES)]
 pub struct RenderOptions {
     #[command(flatten)]
-    pub scene: SceneOptions,
+    pub scene: SceneArguments,
     #[command(flatten)]
     pub picture: PictureOptions,
     #[command(flatten)]
@@ -44,10 +48,10 @@ pub struct RenderOptions {
 
 /// What is read.
 #[derive(Args, Debug)]
-pub struct SceneOptions {
+pub struct SceneArguments {
     /// A scene file (.toml), or a model by itself (.gltf, .glb, .obj)
     pub scene: PathBuf,
-    /// Change a key of the scene file, like light.0.radius=0; may be given again
+    /// Change a key of the scene file, like light.0.angle=0; may be given again
     #[arg(long, value_name = "PATH=VALUE", value_parser = arguments::assignment)]
     pub set: Vec<(String, String)>,
     /// Refuse files that require an extension that is not known
@@ -59,20 +63,20 @@ pub struct SceneOptions {
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Picture")]
 pub struct PictureOptions {
-    /// Pixels across and down, like 1280x720
+    /// Pixels across and down [default: the scene's, or 1280x720]
     #[arg(long, value_name = "WxH", value_parser = arguments::size)]
     pub size: Option<UVec2>,
-    /// Render only this part: upper left pixel, columns, rows
+    /// Render only this part: upper left pixel, columns, rows [default: all]
     #[arg(long, value_name = "X,Y,W,H", value_parser = arguments::crop)]
     pub crop: Option<Rect>,
-    /// Which of the scene's cameras
+    /// Which of the scene's cameras [default: the scene's choice, or the first]
     #[arg(long, value_name = "NAME")]
     pub camera: Option<String>,
-    /// What is computed
-    #[arg(long, value_name = "KIND", value_parser = one_of(names::INTEGRATORS))]
+    /// What is computed [default: the scene's, or whitted]
+    #[arg(long, value_name = "KIND", value_parser = one_of(IntegratorKind::ALL, IntegratorKind::name))]
     pub integrator: Option<IntegratorKind>,
-    /// Scattering events of a path; 1 is direct light only
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    /// Scattering events of a path; 1 is direct light only [default: the scene's, or 8]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_DEPTH)))]
     pub max_depth: Option<u32>,
 }
 
@@ -80,19 +84,19 @@ pub struct PictureOptions {
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Sampling")]
 pub struct SamplingOptions {
-    /// Camera samples per pixel
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 30))]
+    /// Camera samples per pixel [default: the scene's, or 64]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES)))]
     pub samples: Option<u32>,
-    /// Their layout
-    #[arg(long, value_parser = one_of(names::PATTERNS))]
+    /// Their layout [default: the scene's, or sobol]
+    #[arg(long, value_parser = one_of(Pattern::ALL, Pattern::name))]
     pub pattern: Option<Pattern>,
-    /// What part of its pixel they land in
-    #[arg(long, value_parser = one_of(names::TARGETS))]
+    /// What part of its pixel they land in [default: the scene's, or rectangle]
+    #[arg(long, value_parser = one_of(Target::ALL, Target::name))]
     pub target: Option<Target>,
-    /// Shadow rays per light and shading point, in place of what each light says
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    /// Shadow rays per light and shading point, in place of what each light says or 1
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_LIGHT_SAMPLES)))]
     pub light_samples: Option<u32>,
-    /// Other seeds give other random numbers
+    /// Other seeds give other random numbers [default: the scene's, or 0]
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
 }
@@ -105,9 +109,9 @@ pub struct WorkOptions {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
     pub threads: Option<u16>,
     /// How the tree over the triangles is built; none tests every triangle
-    #[arg(long, value_name = "BUILDER", default_value = "balanced", value_parser = one_of(names::BUILDERS))]
+    #[arg(long, value_name = "BUILDER", default_value_t, value_parser = names::builder())]
     pub bvh: Builder,
-    /// Trace one sample of one pixel (column, row, index), print its rays and write no files
+    /// Trace one sample of one pixel (column, row, index), print its rays in world coordinates and write no files
     #[arg(long, value_name = "X,Y,I", value_parser = arguments::sample_id)]
     pub replay: Option<SampleId>,
 }
@@ -119,27 +123,27 @@ pub struct OutputOptions {
     /// A .png or .exr file; may be given again [default: the scene's name with .png, in this folder]
     #[arg(short, long, value_name = "FILE")]
     pub output: Vec<PathBuf>,
-    /// Stops of exposure (PNG)
+    /// Stops of exposure (PNG) [default: 0]
     #[arg(long, value_name = "EV", allow_negative_numbers = true, value_parser = arguments::stops)]
     pub exposure: Option<f32>,
-    /// What happens to what is too bright; none clips it (PNG)
-    #[arg(long, value_parser = one_of(names::TONE_MAPS))]
+    /// What happens to what is too bright; none clips it (PNG) [default: none]
+    #[arg(long, value_parser = one_of(ToneMap::ALL, ToneMap::name))]
     pub tone_map: Option<ToneMap>,
     /// 16 bits a channel (PNG)
     #[arg(long)]
     pub png16: bool,
     /// Layers beside the picture, with commas between them (EXR)
-    #[arg(long, value_delimiter = ',', value_parser = one_of(names::LAYERS))]
+    #[arg(long, value_delimiter = ',', value_parser = one_of(LayerKind::ALL, LayerKind::name))]
     pub layers: Vec<LayerKind>,
     /// Write what was done, how long it took and a digest of the pixels, as JSON
     #[arg(long, value_name = "FILE.json")]
     pub stats: Option<PathBuf>,
 }
 
-impl SceneOptions {
+impl SceneArguments {
     /// How the scene is imported.
-    pub fn import_options(&self) -> halfshade::import::SceneOptions {
-        halfshade::import::SceneOptions {
+    pub fn import_options(&self) -> SceneOptions {
+        SceneOptions {
             is_strict: self.strict,
             overrides: self.set.clone(),
             camera: None,
@@ -149,7 +153,7 @@ impl SceneOptions {
 
 impl RenderOptions {
     /// How the scene is imported.
-    pub fn import_options(&self) -> halfshade::import::SceneOptions {
+    pub fn import_options(&self) -> SceneOptions {
         let mut options = self.scene.import_options();
         options.camera = self.picture.camera.clone();
         // Not later, with the other options: a default camera frames the scene in this size.

@@ -1,7 +1,5 @@
 //! `halfshade render`: scene to picture.
 
-use std::sync::Arc;
-
 use halfshade::camera::Camera;
 use halfshade::film::{Film, Rect};
 use halfshade::import::{Imported, import};
@@ -16,6 +14,7 @@ use super::arguments::SampleId;
 use super::console::{Console, print};
 use super::interrupt::Interrupt;
 use super::layers::LayerValues;
+use super::memory;
 use super::metadata::metadata;
 use super::options::RenderOptions;
 use super::progress::RenderProgress;
@@ -24,6 +23,7 @@ use super::targets::Targets;
 
 /// Does what the options say.
 pub fn run(options: &RenderOptions) -> Result<(), Failure> {
+    let interrupt = Interrupt::listen();
     // All that can be wrong before the work begins.
     let targets = match options.work.replay {
         None => Some(Targets::of(options)?),
@@ -34,11 +34,14 @@ pub fn run(options: &RenderOptions) -> Result<(), Failure> {
         .num_threads(threads)
         .build()
         .map_err(|error| Failure::job(format_args!("threads could not be started: {error}")))?;
-    pool.install(|| run_on_pool(options, targets.as_ref()))
+    pool.install(|| run_on_pool(options, targets.as_ref(), &interrupt))
 }
 
-fn run_on_pool(options: &RenderOptions, targets: Option<&Targets>) -> Result<(), Failure> {
-    let interrupt = Interrupt::listen();
+fn run_on_pool(
+    options: &RenderOptions,
+    targets: Option<&Targets>,
+    interrupt: &Interrupt,
+) -> Result<(), Failure> {
     let mut clock = StepClock::start();
     let mut seconds = Seconds::default();
 
@@ -63,7 +66,8 @@ fn run_on_pool(options: &RenderOptions, targets: Option<&Targets>) -> Result<(),
         return replay_one(options, &job);
     };
 
-    let film = watched(&job, &interrupt, options.console);
+    memory::check(&job, &options.output.layers)?;
+    let film = watched(&job, interrupt, options.console);
     seconds.render = clock.step();
     let values = LayerValues::of_film(&film, &options.output.layers);
     let window = Window {
@@ -91,7 +95,8 @@ fn run_on_pool(options: &RenderOptions, targets: Option<&Targets>) -> Result<(),
 
 /// The scene, with settings that follow the options.
 fn load(options: &RenderOptions) -> Result<Imported, Failure> {
-    let mut imported = import(&options.scene.scene, &options.import_options())?;
+    let mut imported = import(&options.scene.scene, &options.import_options())
+        .map_err(|error| Failure::of_import("render", &error))?;
     announce(options.console, &imported);
     options.apply(&mut imported.settings);
     Ok(imported)
@@ -162,7 +167,7 @@ fn replay_one(options: &RenderOptions, job: &Job) -> Result<(), Failure> {
 }
 
 /// Renders with a progress bar, until it is done or the user has seen enough.
-fn watched(job: &Job, interrupt: &Arc<Interrupt>, console: Console) -> Film {
+fn watched(job: &Job, interrupt: &Interrupt, console: Console) -> Film {
     let settings = job.settings;
     interrupt.rendering_begins();
     console.detail(format_args!(
@@ -180,7 +185,10 @@ fn watched(job: &Job, interrupt: &Arc<Interrupt>, console: Console) -> Film {
         ));
     }
     let progress = RenderProgress::new(console.shows_progress());
-    let film = render(job, &interrupt.is_requested, &|p| progress.observe(p));
+    let film = render(job, interrupt.is_requested(), &|p| progress.observe(p));
+    if film.is_complete {
+        interrupt.rendering_is_complete();
+    }
     progress.finish();
     say_rejected(console, &film);
     film

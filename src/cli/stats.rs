@@ -25,11 +25,11 @@ pub struct Stats {
     pub rays: RayStats,
     pub peak_memory_bytes: Option<u64>,
     /// The error that the render states about itself: it does not yet, and this is `null`.
-    pub error: (),
+    pub error: Option<f64>,
     pub stopped_by: StoppedBy,
     pub rejected_samples: u64,
     /// What the scene did not need: nothing is left out yet.
-    pub left_out: [(); 0],
+    pub left_out: &'static [&'static str],
     /// Of the linear pixels: red, green, blue as little-endian singles, row by row.
     pub sha256: String,
 }
@@ -103,10 +103,10 @@ impl Stats {
                 secondary,
             },
             peak_memory_bytes: process::peak_memory_bytes(),
-            error: (),
+            error: None,
             stopped_by: done.stopped_by,
             rejected_samples: done.film.rejected,
-            left_out: [],
+            left_out: &[],
             sha256: digest(done.pixels),
         }
     }

@@ -22,6 +22,9 @@ impl Targets {
         let output = &options.output;
         let images = images(options).map_err(usage)?;
         check_combination(output, &images).map_err(usage)?;
+        check_stats_name(output.stats.as_deref()).map_err(usage)?;
+        let outputs = images.iter().map(|(path, _)| path).chain(&output.stats);
+        check_distinct(&options.scene.scene, outputs).map_err(usage)?;
         for path in images.iter().map(|(path, _)| path).chain(&output.stats) {
             check_writable(path)?;
         }
@@ -73,12 +76,56 @@ fn images(options: &RenderOptions) -> Result<Vec<(PathBuf, ImageFormat)>, String
         let name = path.display();
         let format = ImageFormat::of_path(&path)
             .ok_or_else(|| format!("{name}: pictures are written as .png or .exr"))?;
-        if images.iter().any(|(other, _)| *other == path) {
-            return Err(format!("{name}: given twice"));
-        }
         images.push((path, format));
     }
     Ok(images)
+}
+
+/// A model or a picture that is given to `--stats` by mistake would be overwritten.
+fn check_stats_name(stats: Option<&Path>) -> Result<(), String> {
+    match stats {
+        Some(path)
+            if path
+                .extension()
+                .is_none_or(|e| !e.eq_ignore_ascii_case("json")) =>
+        {
+            Err(format!("{}: stats are written as .json", path.display()))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// No output may replace the scene or another output, under whatever name.
+fn check_distinct<'a>(
+    scene: &'a Path,
+    outputs: impl Iterator<Item = &'a PathBuf>,
+) -> Result<(), String> {
+    let scene = resolved(scene);
+    let mut known: Vec<PathBuf> = Vec::new();
+    for path in outputs {
+        let (name, path) = (path.display(), resolved(path));
+        if path == scene {
+            return Err(format!("{name}: is the scene, and would be overwritten"));
+        }
+        if known.contains(&path) {
+            return Err(format!("{name}: given twice"));
+        }
+        known.push(path);
+    }
+    Ok(())
+}
+
+/// The one name of a file, which need not be there yet.
+fn resolved(path: &Path) -> PathBuf {
+    let in_folder = || {
+        let folder = match path.parent()? {
+            folder if folder.as_os_str().is_empty() => Path::new("."),
+            folder => folder,
+        };
+        Some(folder.canonicalize().ok()?.join(path.file_name()?))
+    };
+    let there = path.canonicalize().ok();
+    there.or_else(in_folder).unwrap_or_else(|| path.to_owned())
 }
 
 /// Options that no file could follow are mistakes.

@@ -9,6 +9,7 @@ use std::path::Path;
 
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 
+use super::budget::Budget;
 use super::files;
 use crate::texture::{Image, Pixels};
 
@@ -18,13 +19,19 @@ const ALWAYS_ALLOWED_BYTES: u64 = 8192 * 8192 * 4;
 /// Decoded bytes per byte of the file that are allowed beyond [`ALWAYS_ALLOWED_BYTES`].
 const ALLOWED_EXPANSION: u64 = 64;
 
-/// Decodes the file at `path`.
+/// Decodes the file at `path`, whose pixels are charged to `budget`.
 ///
 /// # Errors
-/// A sentence that names the path.
-pub fn read(path: &Path) -> Result<Image, String> {
+/// A sentence that names the path, where it cannot be read or decoded, or with the images before it
+/// holds more pixels than their files account for.
+pub fn read(path: &Path, budget: &Budget) -> Result<Image, String> {
     let name = path.display().to_string();
     let bytes = files::read(path).map_err(|error| format!("{name}: {error}"))?;
+    budget.add_file(bytes.len() as u64);
+    let needed = decoded_bytes(&bytes, &name)?;
+    budget
+        .take(needed)
+        .map_err(|problem| format!("{name}: {problem}"))?;
     decode(&bytes, &name)
 }
 
@@ -172,6 +179,23 @@ mod tests {
                 }
             })
         })
+    }
+
+    #[test]
+    fn images_together_cannot_take_more_than_their_files_account_for() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("plain.png");
+        let bytes = encoded(&DynamicImage::new_luma8(1024, 1024), ImageFormat::Png);
+        std::fs::write(&path, &bytes).unwrap();
+        let budget = Budget::for_pixels(0);
+        assert!(read(&path, &budget).is_ok());
+        while budget.take(1 << 20).is_ok() {}
+        let error = read(&path, &budget).unwrap_err();
+        let expected = format!(
+            "asks for far more memory than its {} bytes",
+            2 * bytes.len()
+        );
+        assert!(error.contains(&expected), "{error}");
     }
 
     #[test]

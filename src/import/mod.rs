@@ -4,6 +4,7 @@
 //! came from. A file that cannot be shown is an [`ImportError`] with its path and place; what is
 //! legal but not shown as its author meant it is a [`Warning`]. Nothing here prints.
 
+mod budget;
 mod files;
 mod gltf;
 mod images;
@@ -48,8 +49,7 @@ pub struct ImportError {
     pub path: PathBuf,
     /// A place in it that a person can find, such as `mesh "tail", triangle 17` or `line 3`.
     pub place: Option<String>,
-    /// What is wrong.
-    #[source]
+    /// What is wrong; part of the message, and so not its source.
     pub problem: Problem,
 }
 
@@ -58,7 +58,7 @@ pub struct ImportError {
 #[non_exhaustive]
 pub enum Problem {
     /// The system could not read it.
-    #[error("{0}")]
+    #[error(transparent)]
     Io(#[from] io::Error),
     /// It does not say what its format demands.
     #[error("{0}")]
@@ -79,6 +79,13 @@ impl fmt::Display for ImportError {
 }
 
 impl ImportError {
+    /// Whether an override or the choice of a camera is wrong, and not a file: the place is then
+    /// the option of the command line.
+    pub fn is_argument(&self) -> bool {
+        let place = self.place.as_deref().unwrap_or("");
+        place.starts_with("--set ") || place.starts_with("--camera ")
+    }
+
     /// `what` is wrong with `path` as a whole.
     pub fn invalid(path: &Path, what: impl Into<String>) -> Self {
         Self {
@@ -124,7 +131,7 @@ impl ImportError {
 pub fn import(path: &Path, options: &SceneOptions) -> Result<Imported, ImportError> {
     match extension(path).as_str() {
         "toml" => scene_file::import_scene(path, options),
-        "gltf" | "glb" | "obj" => scene_file::import_bare(path, options),
+        _ if is_model(path) => scene_file::import_bare(path, options),
         _ => Err(ImportError::invalid(
             path,
             "neither a scene nor a model: the name does not end in .toml, .gltf, .glb or .obj",
@@ -141,11 +148,16 @@ pub fn import_model(path: &Path, options: ImportOptions) -> Result<Imported, Imp
     match extension(path).as_str() {
         "gltf" | "glb" => gltf::import(path, options),
         "obj" => obj::import(path),
-        _ => Err(ImportError::invalid(
-            path,
-            "not a model: the name does not end in .gltf, .glb or .obj",
-        )),
+        _ => Err(ImportError::invalid(path, NOT_A_MODEL)),
     }
+}
+
+/// What is wrong with a path that [`is_model`] does not take.
+const NOT_A_MODEL: &str = "not a model: the name does not end in .gltf, .glb or .obj";
+
+/// Whether the name is that of a file for [`import_model`].
+fn is_model(path: &Path) -> bool {
+    matches!(extension(path).as_str(), "gltf" | "glb" | "obj")
 }
 
 /// What follows the last dot of the name, in lower case.

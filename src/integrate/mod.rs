@@ -6,10 +6,11 @@ mod visibility;
 mod whitted;
 
 pub use log::{RayKind, RayLog, RayRecord};
-pub use views::{View, ViewKind};
+pub use views::{FirstSurface, View, ViewKind};
 pub use whitted::Whitted;
 
 use crate::color::Rgb;
+use crate::light::Light;
 use crate::math::Ray;
 use crate::prepare::PreparedScene;
 use crate::sampling::{Pattern, Sampler};
@@ -39,10 +40,9 @@ pub fn integrator<'a>(
 
 /// Shadow rays per shading point and light: what `asked` or the light says, rounded as `pattern`
 /// wants it, and one where all would be the same.
-fn light_samples(light: &crate::light::Light, asked: Option<u32>, pattern: Pattern) -> u32 {
+fn light_samples(light: &Light, asked: Option<u32>, pattern: Pattern) -> u32 {
     if light.is_delta() {
-        1
-    } else {
-        pattern.cells(asked.unwrap_or_else(|| light.samples()))
+        return 1;
     }
+    pattern.cells(asked.unwrap_or_else(|| light.samples()))
 }

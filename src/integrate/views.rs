@@ -18,6 +18,40 @@ pub enum ViewKind {
     Albedo,
 }
 
+/// The first surface along a ray that can be seen.
+#[derive(Clone, Copy, Debug)]
+pub struct FirstSurface<'a> {
+    scene: &'a PreparedScene<'a>,
+    seen: Option<(f32, Surface<'a>)>,
+}
+
+impl<'a> FirstSurface<'a> {
+    /// Looks for it along `ray`.
+    pub fn along(scene: &'a PreparedScene<'a>, ray: &Ray) -> Self {
+        let mut last = None;
+        while let Some(hit) = scene.closest_hit(ray, last.as_ref()) {
+            if scene.visibility(ray, &hit) > 0.0 {
+                let seen = Some((hit.t, scene.surface(ray, &hit)));
+                return Self { scene, seen };
+            }
+            last = Some(hit);
+        }
+        Self { scene, seen: None }
+    }
+
+    /// What `kind` shows of it; normals are in `[-1, 1]`, and zero is where there is nothing.
+    pub fn value(&self, kind: ViewKind) -> [f32; 3] {
+        let Some((t, surface)) = &self.seen else {
+            return [0.0; 3];
+        };
+        match kind {
+            ViewKind::Normal => surface.interaction.shading_normal.to_array(),
+            ViewKind::Depth => [self.scene.world_distance(*t); 3],
+            ViewKind::Albedo => surface.material.albedo(&surface.lookup).channels(),
+        }
+    }
+}
+
 /// Shows the first surface that can be seen.
 #[derive(Clone, Copy, Debug)]
 pub struct View<'a> {
@@ -27,41 +61,16 @@ pub struct View<'a> {
     pub kind: ViewKind,
 }
 
-impl View<'_> {
-    /// The value itself, for layers: normals are in `[-1, 1]`. Zero where there is nothing.
-    pub fn value(&self, ray: &Ray) -> [f32; 3] {
-        let Some((t, surface)) = self.first_surface(ray) else {
-            return [0.0; 3];
-        };
-        match self.kind {
-            ViewKind::Normal => surface.interaction.shading_normal.to_array(),
-            ViewKind::Depth => [self.scene.world_distance(t); 3],
-            ViewKind::Albedo => surface.material.albedo(&surface.lookup).channels(),
-        }
-    }
-
-    fn first_surface(&self, ray: &Ray) -> Option<(f32, Surface<'_>)> {
-        let mut last = None;
-        while let Some(hit) = self.scene.closest_hit(ray, last.as_ref()) {
-            let surface = self.scene.surface(ray, &hit);
-            if surface.visibility() > 0.0 {
-                return Some((hit.t, surface));
-            }
-            last = Some(hit);
-        }
-        None
-    }
-}
-
 impl Integrator for View<'_> {
     fn radiance(&self, ray: &Ray, _sampler: &Sampler, log: &mut RayLog) -> Rgb {
-        let value = Rgb::from(self.value(ray));
+        let first = FirstSurface::along(self.scene, ray);
+        let value = Rgb::from(first.value(self.kind));
         log.add(RayKind::Camera, || RayRecord {
             kind: RayKind::Camera,
             depth: 0,
             ray: *ray,
-            t: None,
-            weight: value,
+            t: first.seen.map(|(t, _)| t),
+            weight: Rgb::WHITE,
         });
         match self.kind {
             // A picture holds no negative values; nothing stays black.

@@ -89,10 +89,10 @@ impl<'a> Whitted<'a> {
             let Some(hit) = hit else {
                 return total + weight * self.scene.background.radiance;
             };
-            let surface = self.scene.surface(&from.ray, &hit);
-            let opacity = surface.visibility();
+            let opacity = self.scene.visibility(&from.ray, &hit);
             let mut straight = Rgb::splat(1.0 - opacity);
             if opacity > 0.0 {
+                let surface = self.scene.surface(&from.ray, &hit);
                 let here = Pending {
                     weight: weight * opacity,
                     ..*from

@@ -129,7 +129,8 @@ impl Material {
         self.is_double_sided || self.is_glass()
     }
 
-    fn is_glass(&self) -> bool {
+    /// Whether it refracts.
+    pub fn is_glass(&self) -> bool {
         match &self.surface {
             Surface::Phong(phong) => !phong.transmit.is_black(),
             Surface::MetallicRoughness(surface) => surface.transmission.factor > 0.0,

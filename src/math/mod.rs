@@ -12,7 +12,7 @@ mod unit;
 
 pub use aabb::Aabb;
 pub use frame::Frame;
-pub use glam::{Affine2, Affine3A, DAffine3, DMat4, DQuat, DVec2, DVec3, Mat3, UVec2, Vec2, Vec3};
+pub use glam::{Affine2, DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, Mat3, UVec2, Vec2, Vec3};
 pub use ray::Ray;
-pub use rounding::{ONE_MINUS_EPSILON, UNIT_ROUNDOFF, gamma, next_down, next_up};
+pub use rounding::{ONE_MINUS_EPSILON, UNIT_ROUNDOFF, gamma};
 pub use unit::UnitVec3;

@@ -12,13 +12,3 @@ pub const fn gamma(n: u32) -> f32 {
     let nu = n as f32 * UNIT_ROUNDOFF;
     nu / (1.0 - nu)
 }
-
-/// The next `f32` towards positive infinity.
-pub fn next_up(x: f32) -> f32 {
-    x.next_up()
-}
-
-/// The next `f32` towards negative infinity.
-pub fn next_down(x: f32) -> f32 {
-    x.next_down()
-}

@@ -2,7 +2,7 @@
 
 use std::ops::{Deref, Neg};
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// A direction of length 1, up to rounding.
 ///
@@ -12,8 +12,6 @@ use glam::Vec3;
 pub struct UnitVec3(Vec3);
 
 impl UnitVec3 {
-    /// The x axis.
-    pub const X: Self = Self(Vec3::X);
     /// The y axis.
     pub const Y: Self = Self(Vec3::Y);
     /// The z axis.
@@ -31,6 +29,15 @@ impl UnitVec3 {
         // Twice by steps that cannot overflow: 1/largest is infinite for subnormal components.
         let scaled = v / largest;
         Some(Self(scaled / scaled.length()))
+    }
+
+    /// As [`UnitVec3::normalize`], for a vector in double precision.
+    pub fn normalize_f64(v: DVec3) -> Option<Self> {
+        let largest = v.abs().max_element();
+        if !(largest > 0.0 && largest.is_finite()) {
+            return None;
+        }
+        Self::normalize((v / largest).as_vec3())
     }
 
     /// Takes `v` as it is. Its length must be 1 within 1e-4 (checked in debug builds).

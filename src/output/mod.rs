@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 pub use tone_map::tone_mapped;
-pub use whole_file::{check_writable, write_whole};
+pub use whole_file::{check_writable, discard_unfinished, write_whole};
 
 /// Why a file could not be written.
 #[derive(Debug, Error)]

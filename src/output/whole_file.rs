@@ -2,11 +2,31 @@
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
+use std::mem;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tempfile::NamedTempFile;
 
 use super::{OutputError, OutputProblem};
+
+/// The temporary files that are there now.
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes the temporary files of every [`write_whole`] that is under way, for a program that
+/// ends before they do. From then on any other call of this module waits for that end.
+pub fn discard_unfinished() {
+    let unfinished = unfinished();
+    for path in unfinished.iter() {
+        // The program ends in any case.
+        let _ = fs::remove_file(path);
+    }
+    mem::forget(unfinished);
+}
 
 /// Writes `path` through a temporary file in the same folder, which then takes its name.
 ///
@@ -22,14 +42,11 @@ pub fn write_whole(
     let error = |problem: io::Error| OutputError::new(path, problem);
     let target = target(path);
     let temporary = temporary(path, &target)?;
-    let mut buffered = BufWriter::new(temporary.as_file());
+    let mut buffered = BufWriter::new(temporary.file.as_file());
     write(&mut buffered).map_err(error)?;
     buffered.flush().map_err(error)?;
     drop(buffered);
-    temporary
-        .persist(&target)
-        .map_err(|failed| error(failed.error))?;
-    Ok(())
+    temporary.persist(&target).map_err(error)
 }
 
 /// Whether [`write_whole`] can be expected to succeed, so that a job need not run in vain.
@@ -54,7 +71,7 @@ fn target(path: &Path) -> PathBuf {
     fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())
 }
 
-fn temporary(path: &Path, target: &Path) -> Result<NamedTempFile, OutputError> {
+fn temporary(path: &Path, target: &Path) -> Result<Temporary, OutputError> {
     let folder = match target.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
@@ -71,9 +88,40 @@ fn temporary(path: &Path, target: &Path) -> Result<NamedTempFile, OutputError> {
         // What any new file asks for; the user's mask is taken off by the system.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    builder
-        .tempfile_in(folder)
-        .map_err(|problem| OutputError::new(path, problem))
+    Temporary::new(&builder, folder).map_err(|problem| OutputError::new(path, problem))
+}
+
+/// A temporary file; it is removed when this is dropped.
+struct Temporary {
+    file: NamedTempFile,
+    // Below the file, so that it is dropped after it: a file that is there is known.
+    known: Known,
+}
+
+impl Temporary {
+    fn new(builder: &tempfile::Builder, folder: &Path) -> io::Result<Self> {
+        let mut unfinished = unfinished();
+        let file = builder.tempfile_in(folder)?;
+        unfinished.push(file.path().to_owned());
+        let known = Known(file.path().to_owned());
+        Ok(Self { file, known })
+    }
+
+    fn persist(self, target: &Path) -> io::Result<()> {
+        let Self { file, known } = self;
+        let result = file.persist(target).map_err(|failed| failed.error);
+        drop(known);
+        result.map(drop)
+    }
+}
+
+/// Takes the path out of [`UNFINISHED`] when it is dropped.
+struct Known(PathBuf);
+
+impl Drop for Known {
+    fn drop(&mut self) {
+        unfinished().retain(|path| *path != self.0);
+    }
 }
 
 #[cfg(test)]

@@ -3,14 +3,10 @@
 use rayon::prelude::*;
 
 use crate::bvh::{Builder, Bvh, Tracer};
-use crate::math::{DAffine3, Vec3};
+use crate::math::{DAffine3, DMat3, Mat3, Vec3, gamma};
 use crate::scene::{Instance, MeshId, Scene};
 
 use super::placement::Placement;
-
-/// Triangles that flattening may add to a scene, beyond one copy of each mesh, before shared
-/// meshes are kept as instances.
-const FLATTEN_BUDGET: u64 = 1 << 21;
 
 /// Triangles of one tree, in the coordinates that they are traced in.
 #[derive(Debug, Default)]
@@ -44,7 +40,39 @@ pub enum Placing {
         instance: u32,
         /// From the mesh's coordinates to prepared ones.
         to_prepared: DAffine3,
+        /// How it spreads rounding errors.
+        error: ErrorSpread,
     },
+}
+
+/// Magnitudes of a transform and its inverse, which bound what rounding does to a point on its
+/// way there and back.
+#[derive(Clone, Copy, Debug)]
+pub struct ErrorSpread {
+    forward: Mat3,
+    backward: Mat3,
+    shift: Vec3,
+}
+
+impl ErrorSpread {
+    fn of(transform: &DAffine3) -> Self {
+        let magnitudes =
+            |m: DMat3| Mat3::from_cols_array(&m.to_cols_array().map(|c| c.abs() as f32));
+        let inverse = transform.inverse();
+        Self {
+            forward: magnitudes(transform.matrix3),
+            backward: magnitudes(inverse.matrix3),
+            shift: inverse.translation.abs().as_vec3(),
+        }
+    }
+
+    /// How far a point whose coordinates are at most `reach` may be off, after it was rounded in
+    /// the mesh's coordinates.
+    pub fn bound(&self, reach: Vec3) -> Vec3 {
+        let bound = self.forward * (self.backward * reach + self.shift) * gamma(8);
+        // Scales beyond single precision have no bound, and rays that start there no use.
+        if bound.is_finite() { bound } else { reach }
+    }
 }
 
 /// A run of triangles in a flattened tree.
@@ -71,8 +99,15 @@ pub struct Geometry {
 
 impl Geometry {
     /// Places and builds everything that `scene` holds.
-    pub fn build(scene: &Scene, placement: &Placement, builder: Builder) -> Self {
-        let instanced = instanced_meshes(scene);
+    ///
+    /// At most `flatten_budget` triangles are added by flattening shared meshes.
+    pub fn build(
+        scene: &Scene,
+        placement: &Placement,
+        builder: Builder,
+        flatten_budget: u64,
+    ) -> Self {
+        let instanced = instanced_meshes(scene, flatten_budget);
         let (shared, mut single): (Vec<_>, Vec<_>) = scene
             .instances
             .iter()
@@ -112,6 +147,7 @@ impl Geometry {
                 placing: Placing::Instanced {
                     instance: id,
                     to_prepared,
+                    error: ErrorSpread::of(&to_prepared),
                 },
             });
         }
@@ -151,22 +187,32 @@ fn transforms(traced: &[Traced]) -> Vec<(u32, DAffine3)> {
         .collect()
 }
 
-/// The meshes that are kept as instances, in rising order: none while flattening all is cheap,
-/// else those whose copies alone would take a noticeable share.
-fn instanced_meshes(scene: &Scene) -> Vec<MeshId> {
+/// The meshes that are kept as instances, in rising order: those with most triangles in copies,
+/// so that all other copies together are within `flatten_budget`.
+fn instanced_meshes(scene: &Scene, flatten_budget: u64) -> Vec<MeshId> {
     let mut uses = vec![0u64; scene.meshes.len()];
     for instance in &scene.instances {
         uses[instance.mesh.0 as usize] += 1;
     }
-    let copies = |id: usize| uses[id].saturating_sub(1) * scene.meshes[id].indices().len() as u64;
-    let total: u64 = (0..uses.len()).map(copies).sum();
-    if total <= FLATTEN_BUDGET {
-        return Vec::new();
-    }
-    (0..uses.len())
-        .filter(|&id| copies(id) > FLATTEN_BUDGET / 64)
-        .map(|id| MeshId(id as u32))
-        .collect()
+    let mut copies: Vec<(u64, MeshId)> = (0..uses.len())
+        .map(|id| {
+            let triangles = scene.meshes[id].indices().len() as u64;
+            let copies = uses[id].saturating_sub(1) * triangles;
+            (copies, MeshId(id as u32))
+        })
+        .collect();
+    copies.sort_by_key(|&(copies, id)| (copies, id));
+    let mut added = 0;
+    let flattened = copies
+        .iter()
+        .take_while(|(copies, _)| {
+            added += copies;
+            added <= flatten_budget
+        })
+        .count();
+    let mut instanced: Vec<MeshId> = copies.split_off(flattened).iter().map(|c| c.1).collect();
+    instanced.sort();
+    instanced
 }
 
 /// One tree of all `instances`, in prepared coordinates.

@@ -51,17 +51,26 @@ pub struct Prepared<'a> {
     pub warnings: Warnings,
 }
 
+/// Triangles that flattening may add to a scene, beyond one copy of each mesh, before shared
+/// meshes are kept as instances.
+pub const FLATTEN_BUDGET: u64 = 1 << 21;
+
 /// Makes `scene` ready to be rendered.
 pub fn prepare(scene: &Scene, builder: Builder) -> Prepared<'_> {
+    prepare_within(scene, builder, FLATTEN_BUDGET)
+}
+
+/// As [`prepare`], with a budget of its own in place of [`FLATTEN_BUDGET`]: with 0 every mesh that
+/// is used more than once is kept as instances.
+pub fn prepare_within(scene: &Scene, builder: Builder, flatten_budget: u64) -> Prepared<'_> {
     let placement = Placement::of(scene);
-    let geometry = Geometry::build(scene, &placement, builder);
+    let geometry = Geometry::build(scene, &placement, builder, flatten_budget);
     let mut warnings = Warnings::default();
     warnings.add_many(
         WarningCode::NonFiniteVertex,
         "triangles with a vertex that is not a finite number were left out",
         geometry.non_finite_triangles,
     );
-    let linear = |t: &DAffine3| t.matrix3;
     let prepared = PreparedScene {
         scene,
         placement,
@@ -75,9 +84,12 @@ pub fn prepare(scene: &Scene, builder: Builder) -> Prepared<'_> {
         orientation: scene
             .instances
             .iter()
-            .map(|i| linear(&i.transform).determinant().signum() as f32)
+            .map(|i| i.transform.matrix3.determinant().signum() as f32)
             .collect(),
-        has_transparency: scene.materials.iter().any(|m| !m.is_opaque()),
+        has_transparency: scene
+            .instances
+            .iter()
+            .any(|i| !scene.materials[i.material.0 as usize].is_opaque()),
         geometry,
     };
     Prepared {
@@ -129,12 +141,17 @@ impl PreparedScene<'_> {
     /// hit meets each of several coincident surfaces once; and a ray through the edge of two
     /// triangles crosses one surface there, not two.
     pub fn closest_hit(&self, ray: &Ray, after: Option<&Hit>) -> Option<Hit> {
-        match after {
-            None => self.geometry.tracer.closest_hit(ray),
-            Some(last) => self.geometry.tracer.closest_hit_if(ray, |hit| {
-                order(hit) > order(last) && !self.is_same_crossing(ray, last, hit)
-            }),
-        }
+        let Some(last) = after else {
+            return self.geometry.tracer.closest_hit(ray);
+        };
+        // What is nearer has been seen; coincident surfaces have not.
+        let rest = Ray {
+            t_min: ray.t_min.max(last.t.next_down()),
+            ..*ray
+        };
+        self.geometry.tracer.closest_hit_if(&rest, |hit| {
+            order(hit) > order(last) && !self.is_same_crossing(ray, last, hit)
+        })
     }
 
     /// Whether two hits of a ray are on an edge or corner that their triangles share, and the
@@ -162,19 +179,19 @@ impl PreparedScene<'_> {
         }
     }
 
-    /// The surfaces that `ray` crosses and light may pass, from front to back; `None` where
-    /// something that no light passes is in the way.
+    /// The surfaces that `ray` crosses and that let some light pass, from front to back; `None`
+    /// where something that no light passes is in the way.
     pub fn crossings(&self, ray: &Ray) -> Option<Vec<Hit>> {
         if !self.has_transparency {
             return (!self.is_blocked(ray)).then(Vec::new);
         }
         let crossed = RefCell::new(Vec::new());
         let is_blocked = self.geometry.tracer.any_hit_if(ray, |hit| {
-            let is_opaque = self.is_opaque(hit);
-            if !is_opaque {
+            let opacity = self.opacity(hit);
+            if opacity > 0.0 && opacity < 1.0 {
                 crossed.borrow_mut().push(*hit);
             }
-            is_opaque
+            opacity >= 1.0
         });
         if is_blocked {
             return None;

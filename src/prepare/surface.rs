@@ -2,8 +2,8 @@
 
 use crate::bvh::Hit;
 use crate::interaction::{Interaction, rounding_error};
-use crate::material::{Bsdf, Lookup, MAX_UV_SETS, Material, NormalMap};
-use crate::math::{DVec3, Frame, Mat3, Ray, UnitVec3, Vec2, Vec3, gamma};
+use crate::material::{AlphaMode, Bsdf, Lookup, MAX_UV_SETS, Material, NormalMap};
+use crate::math::{DVec3, Frame, ONE_MINUS_EPSILON, Ray, UnitVec3, Vec2, Vec3};
 use crate::scene::{Instance, Mesh};
 use crate::texture::Encoding;
 
@@ -24,15 +24,6 @@ pub struct Surface<'a> {
 }
 
 impl Surface<'_> {
-    /// Share of what is behind that stays hidden from who looks here, in `[0, 1]`.
-    pub fn visibility(&self) -> f32 {
-        if self.interaction.is_front || self.material.is_seen_from_back() {
-            self.material.opacity(&self.lookup)
-        } else {
-            0.0
-        }
-    }
-
     /// Index of refraction of the side beyond over the index of the viewer's side.
     pub fn relative_index(&self) -> f32 {
         let specular = &self.bsdf.specular;
@@ -119,6 +110,44 @@ impl<'a> PreparedScene<'a> {
         &self.scene.materials[at.instance.material.0 as usize]
     }
 
+    /// Share of the light that the surface at `hit` stops, in `[0, 1]`, but for what glass
+    /// refracts.
+    pub(super) fn opacity(&self, hit: &Hit) -> f32 {
+        if self.is_opaque(hit) {
+            return 1.0;
+        }
+        let at = self.locate(hit);
+        let material = self.material(&at);
+        let opacity = material.opacity(&self.lookup(&at));
+        if material.is_glass() {
+            opacity.min(ONE_MINUS_EPSILON)
+        } else {
+            opacity
+        }
+    }
+
+    /// Share of what is behind `hit` that stays hidden from who looks along `ray`, in `[0, 1]`.
+    pub fn visibility(&self, ray: &Ray, hit: &Hit) -> f32 {
+        let at = self.locate(hit);
+        let material = self.material(&at);
+        if !material.is_seen_from_back() {
+            let [a, b, c] = self.vertices(hit);
+            let normal = (b - a).cross(c - a) * f64::from(self.orientation(&at));
+            if normal.dot(ray.direction.as_dvec3()) > 0.0 {
+                return 0.0;
+            }
+        }
+        match material.alpha_mode {
+            AlphaMode::Opaque => 1.0,
+            AlphaMode::Mask { .. } | AlphaMode::Blend => material.opacity(&self.lookup(&at)),
+        }
+    }
+
+    /// -1 where the instance mirrors its mesh, else 1.
+    fn orientation(&self, at: &Located) -> f32 {
+        self.orientation[at.instance_number as usize]
+    }
+
     /// Everything that shading reads at `hit` of `ray`.
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface<'a> {
         let at = self.locate(hit);
@@ -132,8 +161,8 @@ impl<'a> PreparedScene<'a> {
         let point = exact.as_vec3();
         let wo = UnitVec3::normalize(-ray.direction).unwrap_or(UnitVec3::Z);
 
-        let outward = unit(edges[0].cross(edges[1])).unwrap_or(wo);
-        let outward = if self.orientation[at.instance_number as usize] < 0.0 {
+        let outward = UnitVec3::normalize_f64(edges[0].cross(edges[1])).unwrap_or(wo);
+        let outward = if self.orientation(&at) < 0.0 {
             -outward
         } else {
             outward
@@ -179,16 +208,8 @@ impl<'a> PreparedScene<'a> {
     fn point_error(&self, hit: &Hit, ray: &Ray, point: Vec3) -> Vec3 {
         match &self.geometry.traced[hit.instance as usize].placing {
             Placing::Flattened(_) => rounding_error(point),
-            Placing::Instanced { to_prepared, .. } => {
-                let forward = Mat3::from_cols_array(
-                    &to_prepared.matrix3.to_cols_array().map(|c| c.abs() as f32),
-                );
-                let inverse = to_prepared.inverse();
-                let backward =
-                    Mat3::from_cols_array(&inverse.matrix3.to_cols_array().map(|c| c.abs() as f32));
-                let shift = inverse.translation.abs().as_vec3();
-                let reach = backward * ray.origin.abs().max(point.abs()) + shift;
-                rounding_error(point) + forward * reach * gamma(8)
+            Placing::Instanced { error, .. } => {
+                rounding_error(point) + error.bound(ray.origin.abs().max(point.abs()))
             }
         }
     }
@@ -253,8 +274,11 @@ impl<'a> PreparedScene<'a> {
                 .transform
                 .matrix3
                 .mul_vec3(DVec3::new(x.into(), y.into(), z.into()));
-        let mirrored = self.orientation[at.instance_number as usize];
-        frame_along(normal, unit(tangent)?.get(), sign * mirrored)
+        frame_along(
+            normal,
+            UnitVec3::normalize_f64(tangent)?.get(),
+            sign * self.orientation(at),
+        )
     }
 }
 
@@ -275,7 +299,7 @@ fn texture_frame(
         return None;
     }
     let sign = determinant.signum();
-    let tangent = unit((edges[0] * d2.y - edges[1] * d1.y) * sign)?;
+    let tangent = UnitVec3::normalize_f64((edges[0] * d2.y - edges[1] * d1.y) * sign)?;
     // v grows downwards: green points against it.
     let toward_v = (edges[1] * d1.x - edges[0] * d2.x) * sign;
     let handed = normal.as_dvec3().cross(tangent.as_dvec3()).dot(-toward_v);
@@ -306,13 +330,4 @@ fn facing(normal: UnitVec3, geometric: UnitVec3, wo: UnitVec3) -> UnitVec3 {
         return normal;
     }
     UnitVec3::normalize(*normal + *wo * (LEAST_COSINE - cos)).unwrap_or(geometric)
-}
-
-/// The direction of `v`, normalised in double precision.
-pub(super) fn unit(v: DVec3) -> Option<UnitVec3> {
-    let largest = v.abs().max_element();
-    if !(largest > 0.0 && largest.is_finite()) {
-        return None;
-    }
-    UnitVec3::normalize((v / largest).as_vec3())
 }

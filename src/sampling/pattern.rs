@@ -1,12 +1,9 @@
 //! How the samples of one pixel are laid out.
 
-use serde::{Deserialize, Serialize};
-
 use super::cells::Cells;
 
 /// How the samples of one pixel, or of one light, are laid out in the unit square.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Pattern {
     /// Centres of m × n cells: free of noise, but aliases in regular stripes.
     Grid,
@@ -20,8 +17,7 @@ pub enum Pattern {
 }
 
 /// What part of its pixel a camera sample may land in.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Target {
     /// The whole square.
     #[default]
@@ -31,8 +27,7 @@ pub enum Target {
 }
 
 /// How the samples of a picture are made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SamplingConfig {
     /// Camera samples per pixel that were asked for.
     pub samples: u32,
@@ -56,6 +51,19 @@ impl Default for SamplingConfig {
 }
 
 impl Pattern {
+    /// All of them.
+    pub const ALL: &[Self] = &[Self::Grid, Self::Jittered, Self::Random, Self::Sobol];
+
+    /// As in scene files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Grid => "grid",
+            Self::Jittered => "jittered",
+            Self::Random => "random",
+            Self::Sobol => "sobol",
+        }
+    }
+
     /// The number of samples that are taken where `count` are asked for: grid and jittered
     /// round up to m × n cells that are nearly square (⌊√count⌋ rows and as many columns as it
     /// takes: 81 gives 9 × 9, 10 gives 4 × 3), the others take what is asked for. At least 1.
@@ -63,6 +71,19 @@ impl Pattern {
         match self {
             Self::Grid | Self::Jittered => Cells::at_least(count).count(),
             Self::Random | Self::Sobol => count.max(1),
+        }
+    }
+}
+
+impl Target {
+    /// All of them.
+    pub const ALL: &[Self] = &[Self::Rectangle, Self::Circle];
+
+    /// As in scene files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Rectangle => "rectangle",
+            Self::Circle => "circle",
         }
     }
 }

@@ -8,7 +8,12 @@ mod mesh;
 mod settings;
 
 pub use mesh::{Mesh, MeshError, MeshId};
-pub use settings::{Background, IntegratorKind, Settings, ToneMap};
+pub use settings::{
+    Background, IntegratorKind, MAX_DEPTH, MAX_LIGHT_SAMPLES, MAX_PIXELS, MAX_SAMPLES, MAX_SIDE,
+    Settings, ToneMap,
+};
+
+use rayon::prelude::*;
 
 use crate::camera::Camera;
 use crate::light::Light;
@@ -80,19 +85,18 @@ impl Scene {
     /// World-space corners of the box around all finite vertices that triangles use; `None`
     /// where there are none.
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
-        let mut bounds = None;
-        for instance in &self.instances {
+        let of_instance = |instance: &Instance| {
             let mesh = self.mesh(instance.mesh);
-            for &vertex in mesh.used_vertices() {
-                let p = mesh.positions()[vertex as usize].as_dvec3();
-                let p = instance.transform.transform_point3(p);
-                if p.is_finite() {
-                    let (min, max) = bounds.unwrap_or((p, p));
-                    bounds = Some((p.min(min), p.max(max)));
-                }
-            }
-        }
-        bounds
+            let vertices = mesh.used_vertices().iter();
+            vertices
+                .map(|&vertex| mesh.positions()[vertex as usize].as_dvec3())
+                .map(|p| instance.transform.transform_point3(p))
+                .filter(|p| p.is_finite())
+                .map(|p| (p, p))
+                .reduce(union)
+        };
+        let bounds = self.instances.par_iter().filter_map(of_instance);
+        bounds.reduce_with(union)
     }
 
     /// Bytes that meshes and images hold in memory.
@@ -101,4 +105,8 @@ impl Scene {
         let images: usize = self.images.iter().map(Image::memory_bytes).sum();
         meshes + images
     }
+}
+
+fn union(a: (DVec3, DVec3), b: (DVec3, DVec3)) -> (DVec3, DVec3) {
+    (a.0.min(b.0), a.1.max(b.1))
 }

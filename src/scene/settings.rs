@@ -1,10 +1,19 @@
 //! How a scene wants to be rendered.
 
-use serde::{Deserialize, Serialize};
-
 use crate::color::Rgb;
 use crate::math::UVec2;
 use crate::sampling::SamplingConfig;
+
+/// Most pixels along one side of a picture.
+pub const MAX_SIDE: u32 = 1 << 16;
+/// Most pixels of a picture.
+pub const MAX_PIXELS: u64 = 1 << 28;
+/// Most camera samples per pixel.
+pub const MAX_SAMPLES: u32 = 1 << 30;
+/// Most scattering events of a path: integrators recurse.
+pub const MAX_DEPTH: u32 = 1024;
+/// Most shadow rays per light and shading point: more than anyone can wait for.
+pub const MAX_LIGHT_SAMPLES: u32 = 1 << 24;
 
 /// What rays bring back that leave the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -16,8 +25,7 @@ pub struct Background {
 }
 
 /// How light is followed, or what else is shown.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum IntegratorKind {
     /// Local shading, shadows, perfect mirrors and refraction
     /// (Whitted 1980, "An Improved Illumination Model for Shaded Display").
@@ -25,15 +33,29 @@ pub enum IntegratorKind {
     Whitted,
     /// Shading normals, mapped from `[-1, 1]` to `[0, 1]`.
     Normal,
-    /// Distance along the view, in metres.
+    /// Distance along the ray, in metres.
     Depth,
     /// Diffuse reflectance or base colour.
     Albedo,
 }
 
+impl IntegratorKind {
+    /// All of them.
+    pub const ALL: &[Self] = &[Self::Whitted, Self::Normal, Self::Depth, Self::Albedo];
+
+    /// As in scene files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Whitted => "whitted",
+            Self::Normal => "normal",
+            Self::Depth => "depth",
+            Self::Albedo => "albedo",
+        }
+    }
+}
+
 /// From linear radiance to a picture on a screen.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ToneMap {
     /// Clip at 1.
     #[default]
@@ -44,6 +66,21 @@ pub enum ToneMap {
     Agx,
     /// Khronos PBR Neutral.
     PbrNeutral,
+}
+
+impl ToneMap {
+    /// All of them.
+    pub const ALL: &[Self] = &[Self::None, Self::Aces, Self::Agx, Self::PbrNeutral];
+
+    /// As on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Aces => "aces",
+            Self::Agx => "agx",
+            Self::PbrNeutral => "pbr-neutral",
+        }
+    }
 }
 
 /// How a scene wants to be rendered; options of the command line go above it.

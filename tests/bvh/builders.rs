@@ -102,8 +102,6 @@ fn stats_tell_the_shape() {
 fn builders_have_names() {
     for builder in Builder::ALL {
         assert_eq!(builder.to_string().parse(), Ok(builder));
-        let json = serde_json::to_string(&builder).unwrap();
-        assert_eq!(json, format!("\"{builder}\""));
     }
     assert!(
         "fastest"

@@ -22,7 +22,7 @@ fn an_index_out_of_range_names_mesh_primitive_and_triangle() {
 #[test]
 fn broken_references_are_named() {
     type Damage = fn(&mut Value);
-    let cases: [(Damage, &str); 9] = [
+    let cases: [(Damage, &str); 12] = [
         (
             |r| r["accessors"] = json!([]),
             "accessor 0: there are only 0",
@@ -34,6 +34,26 @@ fn broken_references_are_named() {
         (
             |r| r["bufferViews"][0]["buffer"] = json!(3),
             "bufferView 0: lies in buffer 3, but there are only 1",
+        ),
+        (
+            |r| r["bufferViews"][0] = json!({ "byteLength": 36 }),
+            "bufferView 0: names no buffer",
+        ),
+        (
+            |r| {
+                r["accessors"][0]["sparse"] = json!({
+                    "count": 1, "indices": { "componentType": 5121 }, "values": { "bufferView": 0 },
+                });
+            },
+            "accessor 0: its sparse indices name no bufferView",
+        ),
+        (
+            |r| {
+                r["accessors"][0]["sparse"] = json!({
+                    "count": 1, "indices": { "bufferView": 0, "componentType": 5121 }, "values": {},
+                });
+            },
+            "accessor 0: its sparse values name no bufferView",
         ),
         (
             |r| r["bufferViews"][0]["byteOffset"] = json!(u64::MAX),

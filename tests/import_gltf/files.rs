@@ -35,6 +35,7 @@ fn buffers_lie_beside_the_file_or_inside() {
         ("100%.bin", "100%.bin"),
         ("deep\\cat.bin", "deep/cat.bin"),
         ("deep/../cat.bin", "cat.bin"),
+        ("../beside.bin", "../beside.bin"),
         (
             &format!("data:application/octet-stream;base64,{data}"),
             "unused",
@@ -42,11 +43,12 @@ fn buffers_lie_beside_the_file_or_inside() {
     ];
     for (uri, file) in cases {
         let folder = tempfile::tempdir().unwrap();
-        fs::create_dir(folder.path().join("deep")).unwrap();
+        let folder = folder.path().join("model");
+        fs::create_dir_all(folder.join("deep")).unwrap();
         let (text, bytes) = beside(uri);
-        write(folder.path(), "cat.gltf", &text);
-        write(folder.path(), file, &bytes);
-        let path = folder.path().join("cat.gltf");
+        write(&folder, "cat.gltf", &text);
+        write(&folder, file, &bytes);
+        let path = folder.join("cat.gltf");
         let imported = import_model(&path, ImportOptions::default()).unwrap();
         assert_eq!(imported.scene.triangle_count(), 1, "{uri}");
     }
@@ -93,7 +95,7 @@ fn what_cannot_be_read_is_named() {
         ),
         (
             "https://a.b/c",
-            "buffer 0 (https://a.b/c): \"https://a.b/c\" is not a file",
+            "buffer 0 (https://a.b/c): \"https://a.b/c\" is not a path",
         ),
     ];
     for (uri, expected) in uris {

@@ -370,3 +370,42 @@ fn a_textured_face_without_coordinates_is_told() {
     let imported = folder.import("a.obj").unwrap();
     assert_eq!(warnings(&imported, WarningCode::BadAttribute)[0].count, 3);
 }
+
+#[test]
+fn an_image_under_many_names_is_read_once() {
+    let names = ["a.png", "./a.png", "x/../a.png", "x/./..//a.png"];
+    let library: String = (names.iter().enumerate())
+        .map(|(i, name)| format!("newmtl m{i}\nmap_Kd {name}\n"))
+        .collect();
+    let faces: String = (0..names.len())
+        .map(|i| format!("usemtl m{i}\nf 1/1 2/1 3/1\n"))
+        .collect();
+    let folder = Folder::with(&[
+        ("a.obj", format!("mtllib a.mtl\n{FACE}{faces}").as_bytes()),
+        ("a.mtl", library.as_bytes()),
+        ("a.png", &png([1, 2, 3, 255])),
+        ("x/y", b""),
+    ]);
+    let imported = folder.import("a.obj").unwrap();
+    assert_eq!(imported.scene.materials.len(), names.len());
+    assert_eq!(imported.scene.images.len(), 1);
+}
+
+#[test]
+fn an_absolute_name_is_opened_where_it_points() {
+    let elsewhere = Folder::with(&[("deep/wood.png", &png([1, 2, 3, 255]))]);
+    let name = elsewhere.path("deep/wood.png");
+    let folder = Folder::with(&[
+        (
+            "a.obj",
+            format!("mtllib a.mtl\n{FACE}usemtl m\nf 1/1 2/1 3/1\n").as_bytes(),
+        ),
+        (
+            "a.mtl",
+            format!("newmtl m\nmap_Kd {}\n", name.display()).as_bytes(),
+        ),
+    ]);
+    let imported = folder.import("a.obj").unwrap();
+    assert_eq!(imported.scene.images.len(), 1);
+    assert!(imported.warnings.is_empty());
+}

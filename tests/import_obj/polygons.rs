@@ -247,6 +247,69 @@ fn huge_polygons_that_cross_themselves_end_in_good_time() {
     }
 }
 
+/// A comb of `teeth` teeth: concave, and free of crossings.
+fn comb(teeth: u32) -> Vec<DVec3> {
+    let mut points = vec![[0.0, -1.0], [f64::from(teeth), -1.0]];
+    points.extend((0..teeth).rev().flat_map(|i| {
+        let x = f64::from(i);
+        [[x + 1.0, 0.0], [x + 0.5, 5.0]]
+    }));
+    polygon(&points)
+}
+
+#[test]
+fn a_large_polygon_is_covered_once() {
+    let comb = comb(25_000);
+    assert!(comb.len() > 50_000);
+    assert_eq!(assert_covered(&comb, false), Ok(()));
+}
+
+#[test]
+fn small_polygons_after_large_ones_that_cross_themselves_are_covered_once() {
+    let star: Vec<DVec3> = (0..40_001)
+        .map(|i| {
+            let (sin, cos) = (f64::from(i) * 20_000.0 / 40_001.0 * std::f64::consts::TAU).sin_cos();
+            DVec3::new(cos, sin, 0.0)
+        })
+        .collect();
+    let small = comb(20);
+    let text = text_of(&star)
+        + &small
+            .iter()
+            .map(|p| format!("v {} {} {}\n", p.x, p.y, p.z))
+            .collect::<String>()
+        + &(1..=small.len())
+            .rev()
+            .fold("f".to_owned(), |face, i| face + &format!(" -{i}"))
+        + "\n";
+    let imported = import_text(&text);
+    let words = warnings(&imported, WarningCode::BadFace);
+    assert_eq!(words.len(), 1, "{words:?}");
+    assert!(
+        words[0].message.contains("cross") && words[0].count == 1,
+        "{words:?}"
+    );
+    let triangles = world_triangles(&imported.scene);
+    let covered: f64 = triangles[star.len() - 2..]
+        .iter()
+        .map(|t| area_vector(t).length())
+        .sum();
+    assert!(
+        (covered - area_vector(&small).length()).abs() < 1e-4,
+        "{covered}"
+    );
+}
+
+#[test]
+fn a_polygon_too_large_to_clip_is_a_fan_and_told() {
+    let comb = comb(70_000);
+    let imported = import_text(&text_of(&comb));
+    assert_eq!(imported.scene.triangle_count() as usize, comb.len() - 2);
+    let words = warnings(&imported, WarningCode::BadFace);
+    assert_eq!(words.len(), 1, "{words:?}");
+    assert!(words[0].message.contains("too large"), "{words:?}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 

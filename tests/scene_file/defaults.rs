@@ -162,6 +162,21 @@ fn pasted_defaults_are_the_same_to_the_bit() {
 }
 
 #[test]
+fn a_background_without_ambient_light_gets_the_default() {
+    let background = |text: &str| scene(text).unwrap().scene.background;
+    let bare = background("");
+    assert_eq!(background("[background]\n"), bare);
+    assert_eq!(background("[background]\nradiance = [0, 0, 0]\n"), bare);
+    let dark = background("[background]\nambient = [0, 0, 0]\n");
+    assert!(dark.ambient.is_black() && !bare.ambient.is_black());
+
+    let implicit = scene("[background]\nradiance = [0.1, 0.2, 0.7]\n").unwrap();
+    assert_eq!(implicit.scene.background.ambient, bare.ambient);
+    let pasted = scene(&implicit.defaults.clone().expect("defaults").text).unwrap();
+    assert_same(&implicit, &pasted);
+}
+
+#[test]
 fn the_lens_of_a_default_camera_is_pasted_with_it() {
     let lens = "[camera]\nlens_radius = 0.1\nfocus_distance = 2.7\nvertical_fov = 33.3\n";
     let implicit = scene(lens).unwrap();

@@ -2,7 +2,6 @@
 
 use halfshade::camera::Projection;
 use halfshade::color::{Rgb, srgb8_to_linear};
-use halfshade::import::scene_file::settings_to_toml;
 use halfshade::light::Light;
 use halfshade::material::{AlphaMode, Surface};
 use halfshade::math::{DVec3, UVec2, Vec3};
@@ -52,38 +51,6 @@ fn settings_are_read() {
     assert_eq!(imported.settings, expected);
     assert_eq!(imported.scene.background.radiance, Rgb::new(0.5, 0.7, 1.0));
     assert_eq!(imported.scene.background.ambient, Rgb::new(0.1, 0.2, 0.3));
-}
-
-#[test]
-fn settings_survive_being_printed_and_read() {
-    for pattern in [
-        Pattern::Grid,
-        Pattern::Jittered,
-        Pattern::Random,
-        Pattern::Sobol,
-    ] {
-        for (target, integrator) in [
-            (Target::Rectangle, IntegratorKind::Whitted),
-            (Target::Circle, IntegratorKind::Albedo),
-            (Target::Rectangle, IntegratorKind::Normal),
-            (Target::Circle, IntegratorKind::Depth),
-        ] {
-            let settings = Settings {
-                size: UVec2::new(17, 4001),
-                sampling: SamplingConfig {
-                    samples: 1 << 30,
-                    pattern,
-                    target,
-                    seed: u64::MAX - 1,
-                },
-                integrator,
-                max_depth: 1024,
-                ..Settings::default()
-            };
-            let text = settings_to_toml(&settings);
-            assert_eq!(scene(&text).unwrap().settings, settings, "{text}");
-        }
-    }
 }
 
 #[test]

@@ -1,6 +1,8 @@
 //! Every mistake is an error that says where it is and what would be right.
 
+use std::error::Error;
 use std::fs;
+use std::path::Path;
 
 use halfshade::import::SceneOptions;
 use proptest::prelude::*;
@@ -102,7 +104,7 @@ const MISTAKES: &[(&str, usize, &[&str])] = &[
     (
         "[integrator]\nkind = \"path\"\n",
         2,
-        &["\"path\"", "not supported"],
+        &["the integrator \"path\" is not supported"],
     ),
     ("[integrator]\nmax_depth = 0\n", 2, &["max_depth must be"]),
     (
@@ -181,6 +183,11 @@ const MISTAKES: &[(&str, usize, &[&str])] = &[
         "[[model]]\nfile = \"no.obj\"\n",
         2,
         &["there is no file \"no.obj\""],
+    ),
+    (
+        "[[model]]\n\nfile = \"scene.toml\"\n",
+        3,
+        &["\"scene.toml\" is not a model", ".gltf, .glb or .obj"],
     ),
     (
         "[[model]]\nfile = \"triangle.obj\"\nscale = 0\n",
@@ -362,7 +369,7 @@ fn files_that_are_no_scenes_are_named() {
         ("scene.txt", ".toml, .gltf, .glb or .obj"),
         ("missing.toml", "missing.toml: "),
         ("missing.obj", "missing.obj: "),
-        ("folder.toml", "folder.toml: "),
+        ("folder.toml", "folder.toml: is a directory, not a file"),
         ("bytes.toml", "bytes.toml, line 3: not text in UTF-8"),
     ] {
         let error = files
@@ -370,6 +377,38 @@ fn files_that_are_no_scenes_are_named() {
             .expect_err(name);
         assert!(error.starts_with(name) && error.contains(words), "{error}");
     }
+}
+
+#[test]
+fn keys_too_deep_are_an_error_on_a_line() {
+    let deep = format!("a{} = 1\n", ".a".repeat(1_000));
+    let error = scene(&deep).unwrap_err();
+    assert!(error.starts_with("scene.toml, line 1: "), "{error}");
+}
+
+#[test]
+#[cfg(unix)]
+fn devices_are_not_read() {
+    let files = Files::new();
+    let link = files.write("x", "").with_file_name("device.toml");
+    std::os::unix::fs::symlink("/dev/null", link).unwrap();
+    let error = files.import("device.toml", &SceneOptions::default());
+    assert_eq!(error.unwrap_err(), "device.toml: is not a regular file");
+}
+
+#[test]
+fn what_is_in_the_message_is_not_its_source_too() {
+    for text in ["[fillm]\n", "[[model]]\nfile = \"broken.gltf\"\n"] {
+        let files = Files::new();
+        files.write("broken.gltf", "{}");
+        let path = files.write("scene.toml", text);
+        let error = halfshade::import::import(&path, &SceneOptions::default()).unwrap_err();
+        assert!(error.source().is_none(), "{error}: {:?}", error.source());
+    }
+    let error = halfshade::import::import(Path::new("missing.toml"), &SceneOptions::default());
+    let error = error.unwrap_err();
+    let source = error.source().map(ToString::to_string);
+    assert!(!source.is_some_and(|source| error.to_string().contains(&source)));
 }
 
 const EXAMPLE: &str = "[camera]\nposition = [0.0, 1.6, 9.0]\nlook_at = [0.0, 1.5, 0.0]\n\

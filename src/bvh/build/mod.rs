@@ -10,7 +10,6 @@ mod primitive;
 mod split;
 
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
 use super::layout::{Block, ChildRef, MAX_DEPTH, Node, Tree};
 use crate::math::{Aabb, Vec3};
@@ -19,8 +18,7 @@ use primitive::{Part, Primitive, corners, primitives};
 use split::{split_median, split_sah};
 
 /// How a tree is built.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Builder {
     /// At the median of the longest axis, at most 4 triangles a leaf: the baseline.
     Median,

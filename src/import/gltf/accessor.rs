@@ -2,11 +2,11 @@
 //!
 //! Every range is checked against the bytes that are there before anything is allocated.
 
-use super::budget::Budget;
 use super::buffers::Buffers;
 use super::component::{Component, code, signed_normalized};
 use super::document::{Accessor, Document, Sparse};
 use crate::import::Problem;
+use crate::import::budget::Budget;
 
 /// Reads accessors of one document.
 #[derive(Debug)]
@@ -203,22 +203,11 @@ impl AccessorReader<'_> {
         let bytes_of_each = size + size_of::<(u32, &[u8])>();
         self.budget.take((replaced * bytes_of_each) as u64)?;
         let width = component_size(index, places.component_type)?;
-        let at = self.elements(
-            index,
-            places.buffer_view,
-            places.byte_offset,
-            0,
-            width,
-            replaced,
-        )?;
-        let new = self.elements(
-            index,
-            values.buffer_view,
-            values.byte_offset,
-            0,
-            size,
-            replaced,
-        )?;
+        let missing = |of: &str| problem(format!("its sparse {of} name no bufferView"));
+        let places_view = places.buffer_view.ok_or_else(|| missing("indices"))?;
+        let values_view = values.buffer_view.ok_or_else(|| missing("values"))?;
+        let at = self.elements(index, places_view, places.byte_offset, 0, width, replaced)?;
+        let new = self.elements(index, values_view, values.byte_offset, 0, size, replaced)?;
         let place = |i: usize| match places.component_type {
             code::U8 => Ok(u32::from(u8::read_le(at.get(i)))),
             code::U16 => Ok(u32::from(u16::read_le(at.get(i)))),

@@ -64,12 +64,15 @@ impl<'a> Buffers<'a> {
             let count = document.buffer_views.len();
             problem(format!("there are only {count} buffer views"))
         })?;
-        let buffer = match self.data.get(view.buffer) {
+        let number = view
+            .buffer
+            .ok_or_else(|| problem("names no buffer".into()))?;
+        let buffer = match self.data.get(number) {
             Some(Data::Bytes(bytes)) => bytes,
             Some(Data::MeshoptOutput) => return Err(unsupported_meshopt(document, index)),
             None => {
                 let count = self.data.len();
-                let what = format!("lies in buffer {}, but there are only {count}", view.buffer);
+                let what = format!("lies in buffer {number}, but there are only {count}");
                 return Err(problem(what));
             }
         };
@@ -81,9 +84,8 @@ impl<'a> Buffers<'a> {
             .and_then(|(start, end)| buffer.get(start..end));
         range.ok_or_else(|| {
             problem(format!(
-                "ends after the {} bytes of buffer {}",
-                buffer.len(),
-                view.buffer
+                "ends after the {} bytes of buffer {number}",
+                buffer.len()
             ))
         })
     }

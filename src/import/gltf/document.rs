@@ -52,12 +52,12 @@ pub struct SceneEntry {
     pub nodes: Vec<usize>,
 }
 
-/// A place in the hierarchy. Rare and large members are boxed: files have many nodes.
+/// A place in the hierarchy. Rare and large members are boxed: files have many nodes, and `{}` is one.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub struct Node {
-    pub name: Option<String>,
-    pub children: Vec<usize>,
+    pub name: Option<Box<str>>,
+    pub children: Box<[usize]>,
     pub matrix: Option<Box<[f64; 16]>>,
     pub translation: Option<Box<[f64; 3]>>,
     pub rotation: Option<Box<[f64; 4]>>,
@@ -65,7 +65,7 @@ pub struct Node {
     pub mesh: Option<usize>,
     pub skin: Option<usize>,
     pub camera: Option<usize>,
-    pub weights: Option<Vec<f32>>,
+    pub weights: Option<Box<[f32]>>,
     pub extensions: Extensions,
 }
 
@@ -137,7 +137,7 @@ pub struct Sparse {
 #[derive(Debug, Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
 pub struct SparseIndices {
-    pub buffer_view: usize,
+    pub buffer_view: Option<usize>,
     pub byte_offset: u64,
     pub component_type: u32,
 }
@@ -146,7 +146,7 @@ pub struct SparseIndices {
 #[derive(Debug, Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
 pub struct SparseValues {
-    pub buffer_view: usize,
+    pub buffer_view: Option<usize>,
     pub byte_offset: u64,
 }
 
@@ -154,7 +154,7 @@ pub struct SparseValues {
 #[derive(Debug, Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
 pub struct BufferView {
-    pub buffer: usize,
+    pub buffer: Option<usize>,
     pub byte_offset: u64,
     pub byte_length: u64,
     pub byte_stride: u64,
@@ -229,15 +229,15 @@ pub struct OrthographicEntry {
     pub ymag: f32,
 }
 
-/// Extension objects by name.
+/// Extension objects by name; boxed, since most things have none.
 #[derive(Debug, Default, Deserialize)]
 #[serde(transparent)]
-pub struct Extensions(Map<String, Value>);
+pub struct Extensions(Option<Box<Map<String, Value>>>);
 
 impl Extensions {
     /// Whether an object of this name is there.
     pub fn has(&self, name: &str) -> bool {
-        self.0.contains_key(name)
+        self.get(name).is_some()
     }
 
     /// The object of this name; `None` where there is none.
@@ -245,10 +245,13 @@ impl Extensions {
     /// # Errors
     /// Where it has not the shape that the extension demands.
     pub fn read<T: DeserializeOwned>(&self, name: &str) -> Result<Option<T>, String> {
-        self.0
-            .get(name)
+        self.get(name)
             .map(|value| T::deserialize(value).map_err(|error| format!("{name}: {error}")))
             .transpose()
+    }
+
+    fn get(&self, name: &str) -> Option<&Value> {
+        self.0.as_deref()?.get(name)
     }
 }
 
@@ -263,6 +266,14 @@ pub fn place(kind: &str, index: usize, name: Option<&str>) -> String {
     match name.char_indices().nth(SHOWN_CHARACTERS) {
         Some((end, _)) => format!("{kind} {:?}…", &name[..end]),
         None => format!("{kind} {name:?}"),
+    }
+}
+
+impl Node {
+    /// Whether it is anywhere else than its parent.
+    pub fn has_transform(&self) -> bool {
+        let (translation, rotation) = (&self.translation, &self.rotation);
+        self.matrix.is_some() || translation.is_some() || rotation.is_some() || self.scale.is_some()
     }
 }
 
@@ -292,5 +303,20 @@ impl ElementKind {
 impl fmt::Display for ElementKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", format!("{self:?}").to_ascii_uppercase())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `{},` is an entry: of 3 bytes of JSON it makes as many as these.
+    #[test]
+    fn empty_entries_are_small() {
+        assert!(size_of::<Node>() <= 136, "{}", size_of::<Node>());
+        let material = size_of::<MaterialEntry>();
+        assert!(material <= 96, "{material}");
+        let primitive = size_of::<Primitive>();
+        assert!(primitive <= 136, "{primitive}");
     }
 }

@@ -8,8 +8,8 @@ use super::document::Extensions;
 #[derive(Debug, Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
 pub struct MaterialEntry {
-    pub name: Option<String>,
-    pub pbr_metallic_roughness: Box<PbrMetallicRoughness>,
+    pub name: Option<Box<str>>,
+    pub pbr_metallic_roughness: Option<Box<PbrMetallicRoughness>>,
     pub normal_texture: Option<Box<TextureInfo>>,
     pub occlusion_texture: Option<Box<TextureInfo>>,
     pub emissive_texture: Option<Box<TextureInfo>>,

@@ -1,10 +1,14 @@
 //! What becomes of extensions: known, harmless, left out with a word, or refused.
+//!
+//! Of some that are known, values are kept that nothing shows yet: [`check_materials`] says where.
 
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use super::document::Document;
-use crate::import::{ImportError, ImportOptions, WarningCode, Warnings};
+use super::document::{Document, place};
+use crate::color::Rgb;
+use crate::import::{ImportError, ImportOptions, Problem, WarningCode, Warnings};
+use crate::material::{Material, MetallicRoughness, Surface};
 
 /// Compressed meshes that we cannot read.
 pub const DRACO: &str = "KHR_draco_mesh_compression";
@@ -20,8 +24,12 @@ pub const WEBP: &str = "EXT_texture_webp";
 pub const BASISU: &str = "KHR_texture_basisu";
 /// Offset, rotation and scale of texture coordinates.
 pub const TEXTURE_TRANSFORM: &str = "KHR_texture_transform";
+/// Surfaces that let light through.
+pub const TRANSMISSION: &str = "KHR_materials_transmission";
+/// What is inside of them.
+pub const VOLUME: &str = "KHR_materials_volume";
 
-/// What we do all of.
+/// What we do all of, but for what [`check_materials`] tells.
 const KNOWN: &[&str] = &[
     LIGHTS,
     INSTANCING,
@@ -30,9 +38,9 @@ const KNOWN: &[&str] = &[
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
     "KHR_materials_specular",
-    "KHR_materials_transmission",
+    TRANSMISSION,
     "KHR_materials_unlit",
-    "KHR_materials_volume",
+    VOLUME,
     "KHR_mesh_quantization",
 ];
 
@@ -102,6 +110,53 @@ pub fn check(
         }
     }
     Ok(())
+}
+
+/// Tells which materials have values of known extensions that are kept and not shown; `materials`
+/// are those of the document, in its order.
+///
+/// # Errors
+/// In strict mode, where the file requires such an extension.
+pub fn check_materials(
+    document: &Document,
+    materials: &[Material],
+    path: &Path,
+    options: ImportOptions,
+    warnings: &mut Warnings,
+) -> Result<(), ImportError> {
+    for (index, material) in materials.iter().enumerate() {
+        let Surface::MetallicRoughness(surface) = &material.surface else {
+            continue;
+        };
+        for (extension, what) in unshown(surface) {
+            let place = place("material", index, Some(&material.name));
+            let is_required = document.extensions_required.iter().any(|e| e == extension);
+            if is_required && options.is_strict {
+                return Err(ImportError {
+                    path: path.to_owned(),
+                    place: Some(place),
+                    problem: Problem::Unsupported(format!("{what} ({extension})")),
+                });
+            }
+            let message = format!("{place}: {what} ({extension}) is not supported: it looks clear");
+            warnings.add(WarningCode::Approximated, message);
+        }
+    }
+    Ok(())
+}
+
+/// Extensions of which `surface` has more than is shown, and what that is.
+fn unshown(surface: &MetallicRoughness) -> impl Iterator<Item = (&'static str, &'static str)> {
+    let is_metal = surface.metallic.factor == 1.0 && surface.metallic.texture.is_none();
+    let lets_light_through = surface.transmission.factor > 0.0 && !is_metal;
+    let is_rough = lets_light_through && surface.roughness.factor > 0.0;
+    let is_colored = lets_light_through
+        && surface.thickness.factor > 0.0
+        && surface.attenuation_distance.is_finite()
+        && surface.attenuation_color != Rgb::WHITE;
+    let rough = is_rough.then_some((TRANSMISSION, "light through a rough surface"));
+    let colored = is_colored.then_some((VOLUME, "the colour of a volume"));
+    rough.into_iter().chain(colored)
 }
 
 /// Whether only the things that use an extension can tell if anything is missing without it.

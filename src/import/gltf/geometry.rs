@@ -96,12 +96,8 @@ impl GeometryReader<'_, '_> {
         selection: &Selection,
         warnings: &mut Warnings,
     ) -> Option<Vec<[f32; N]>> {
-        let &accessor = attributes.get(name)?;
-        let read = self
-            .check_count(accessor, vertices)
-            .and_then(|()| self.accessors.floats(accessor, selection));
-        read.map_err(|problem| self.drop_attribute(name, &problem, warnings))
-            .ok()
+        let read = |accessor| self.accessors.floats(accessor, selection);
+        self.vertex_values(attributes, name, vertices, read, warnings)
     }
 
     /// As [`Self::vertex_floats`], for unsigned integers.
@@ -113,11 +109,24 @@ impl GeometryReader<'_, '_> {
         selection: &Selection,
         warnings: &mut Warnings,
     ) -> Option<Vec<[u32; N]>> {
+        let read = |accessor| self.accessors.integers(accessor, selection);
+        self.vertex_values(attributes, name, vertices, read, warnings)
+    }
+
+    fn vertex_values<T>(
+        &self,
+        attributes: &Attributes,
+        name: &str,
+        vertices: usize,
+        read: impl FnOnce(usize) -> Result<Vec<T>, Problem>,
+        warnings: &mut Warnings,
+    ) -> Option<Vec<T>> {
         let &accessor = attributes.get(name)?;
-        let read = self
+        let values = self
             .check_count(accessor, vertices)
-            .and_then(|()| self.accessors.integers(accessor, selection));
-        read.map_err(|problem| self.drop_attribute(name, &problem, warnings))
+            .and_then(|()| read(accessor));
+        values
+            .map_err(|problem| self.drop_attribute(name, &problem, warnings))
             .ok()
     }
 

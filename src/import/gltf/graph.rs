@@ -12,13 +12,33 @@ pub type Misplaced = (String, String);
 /// Where nodes are in the world, and which are shown.
 #[derive(Debug)]
 pub struct Graph {
-    /// From each node's coordinates to the world's; `None` where that is not finite.
-    pub world: Vec<Option<DAffine3>>,
+    worlds: Worlds,
     /// The nodes of the scene, parents before their children, in file order.
     pub shown: Vec<usize>,
 }
 
+/// From nodes' coordinates to the world's. Nodes without a transform share that of their parent.
+#[derive(Debug)]
+struct Worlds {
+    transforms: Vec<DAffine3>,
+    /// By node: which of the transforms, or [`Worlds::NOWHERE`].
+    of_node: Vec<u32>,
+}
+
+impl Worlds {
+    /// The place of what is outside of all nodes.
+    const ROOT: u32 = 0;
+    /// The place of nodes whose transform is not finite.
+    const NOWHERE: u32 = u32::MAX;
+}
+
 impl Graph {
+    /// From the coordinates of node `index` to the world's; `None` where that is not finite.
+    pub fn world(&self, index: usize) -> Option<&DAffine3> {
+        let place = *self.worlds.of_node.get(index)?;
+        self.worlds.transforms.get(place as usize)
+    }
+
     /// Of the document's default scene, or its first, or of all its nodes.
     ///
     /// # Errors
@@ -32,12 +52,12 @@ impl Graph {
         if order.len() < document.nodes.len() {
             return Err(cycle(document, &order));
         }
-        let world = world_transforms(document, &parents, &order, warnings);
+        let worlds = world_transforms(document, &parents, &order, warnings);
         let shown = match shown_roots(document, warnings)? {
             Some(roots) => depth_first(document, &roots),
             None => order,
         };
-        Ok(Self { world, shown })
+        Ok(Self { worlds, shown })
     }
 }
 
@@ -116,19 +136,25 @@ fn world_transforms(
     parents: &[Option<usize>],
     order: &[usize],
     warnings: &mut Warnings,
-) -> Vec<Option<DAffine3>> {
-    let mut world: Vec<Option<DAffine3>> = vec![None; parents.len()];
+) -> Worlds {
+    let mut transforms = vec![DAffine3::IDENTITY];
+    let mut of_node = vec![Worlds::NOWHERE; parents.len()];
     for &index in order {
-        let above = match parents[index] {
-            Some(parent) => world[parent],
-            None => Some(DAffine3::IDENTITY),
-        };
+        let above = parents[index].map_or(Worlds::ROOT, |parent| of_node[parent]);
+        let node = &document.nodes[index];
+        if !node.has_transform() {
+            of_node[index] = above;
+            continue;
+        }
         // Below a node that has no place, nothing has; one warning is enough.
-        let Some(above) = above else { continue };
+        let Some(&above) = transforms.get(above as usize) else {
+            continue;
+        };
         let place = || document.node_place(index);
-        let own = above * local_transform(&document.nodes[index], place, warnings);
+        let own = above * local_transform(node, place, warnings);
         if own.is_finite() {
-            world[index] = Some(own);
+            of_node[index] = transforms.len() as u32;
+            transforms.push(own);
         } else {
             let message = format!(
                 "{}: its transform is not finite; it is left out with all below it",
@@ -137,7 +163,10 @@ fn world_transforms(
             warnings.add(WarningCode::BadValue, message);
         }
     }
-    world
+    Worlds {
+        transforms,
+        of_node,
+    }
 }
 
 fn local_transform(node: &Node, place: impl Fn() -> String, warnings: &mut Warnings) -> DAffine3 {

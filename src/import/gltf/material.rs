@@ -2,10 +2,10 @@
 
 use super::document::{Extensions, place};
 use super::document_material::{
-    AlphaModeEntry, EmissiveStrength, Ior, MaterialEntry, Specular, TextureInfo, TextureTransform,
-    Transmission, Volume,
+    AlphaModeEntry, EmissiveStrength, Ior, MaterialEntry, PbrMetallicRoughness, Specular,
+    TextureInfo, TextureTransform, Transmission, Volume,
 };
-use super::extensions::TEXTURE_TRANSFORM;
+use super::extensions::{TEXTURE_TRANSFORM, TRANSMISSION, VOLUME};
 use super::geometry::MAX_UV_SETS;
 use super::texture::Textures;
 use crate::color::Rgb;
@@ -41,8 +41,10 @@ pub fn material(
     warnings: &mut Warnings,
 ) -> Material {
     let place = place("material", index, entry.name.as_deref());
+    let default = PbrMetallicRoughness::default();
     let mut reader = MaterialReader {
         entry,
+        base: entry.pbr_metallic_roughness.as_deref().unwrap_or(&default),
         textures,
         place,
         warnings,
@@ -52,6 +54,7 @@ pub fn material(
 
 struct MaterialReader<'a> {
     entry: &'a MaterialEntry,
+    base: &'a PbrMetallicRoughness,
     textures: &'a Textures,
     place: String,
     warnings: &'a mut Warnings,
@@ -60,7 +63,7 @@ struct MaterialReader<'a> {
 impl MaterialReader<'_> {
     fn material(&mut self) -> Material {
         let entry = self.entry;
-        let name = entry.name.clone().unwrap_or_default();
+        let name = entry.name.as_deref().unwrap_or_default().to_owned();
         let base_color = self.base_color();
         let alpha_mode = self.alpha_mode();
         let opacity = self.opacity(base_color.texture);
@@ -86,7 +89,7 @@ impl MaterialReader<'_> {
     }
 
     fn base_color(&mut self) -> TexturedRgb {
-        let pbr = &self.entry.pbr_metallic_roughness;
+        let pbr = self.base;
         let [r, g, b, _] = pbr.base_color_factor;
         TexturedRgb {
             factor: self.color("baseColorFactor", [r, g, b], 1.0),
@@ -95,7 +98,7 @@ impl MaterialReader<'_> {
     }
 
     fn opacity(&mut self, texture: Option<TextureRef>) -> TexturedScalar {
-        let [.., alpha] = self.entry.pbr_metallic_roughness.base_color_factor;
+        let [.., alpha] = self.base.base_color_factor;
         TexturedScalar {
             factor: self.number("the alpha of baseColorFactor", alpha, 0.0, 1.0),
             texture,
@@ -141,10 +144,10 @@ impl MaterialReader<'_> {
     }
 
     fn surface(&mut self, base_color: TexturedRgb) -> MetallicRoughness {
-        let pbr = &self.entry.pbr_metallic_roughness;
+        let pbr = self.base;
         let specular: Specular = self.extension("KHR_materials_specular");
-        let transmission: Transmission = self.extension("KHR_materials_transmission");
-        let volume: Volume = self.extension("KHR_materials_volume");
+        let transmission: Transmission = self.extension(TRANSMISSION);
+        let volume: Volume = self.extension(VOLUME);
         let texture = self.texture(pbr.metallic_roughness_texture.as_ref());
         let scalar = |factor, texture, channel| TexturedScalar {
             factor,

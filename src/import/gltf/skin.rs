@@ -44,10 +44,12 @@ impl Skin {
         }
         let mut joints = Vec::with_capacity(skin.joints.len());
         for (i, &node) in skin.joints.iter().enumerate() {
-            let Some(world) = graph.world.get(node) else {
+            if node >= document.nodes.len() {
                 return Err(problem(format!("its joint {node} is not there")));
+            }
+            let Some(world) = graph.world(node) else {
+                return Ok(None);
             };
-            let Some(world) = world else { return Ok(None) };
             let bind = binds.get(i).map_or(DAffine3::IDENTITY, bind_matrix);
             joints.push((*world, bind));
         }

@@ -9,11 +9,11 @@ use std::path::Path;
 use rayon::prelude::*;
 use serde::Deserialize;
 
-use super::budget::Budget;
 use super::buffers::Buffers;
 use super::document::{Document, ImageEntry, Sampler, TextureEntry, place};
 use super::extensions::{BASISU, WEBP};
 use super::uri;
+use crate::import::budget::Budget;
 use crate::import::{Problem, WarningCode, Warnings, images};
 use crate::texture::{Filter, Image, ImageId, Texture, TextureId, Wrap};
 

@@ -1,4 +1,7 @@
-//! What a glTF document names: bytes in the URI itself, or files beside it.
+//! What a glTF document names: bytes in the URI itself, or files by a path relative to its own.
+//!
+//! Such a path may lead out of the model's folder with `..`, as those of real models do; absolute
+//! paths and URIs of other schemes are refused.
 
 use std::path::{Path, PathBuf};
 
@@ -20,8 +23,8 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
 /// The bytes that `uri` stands for in a document that lies in `folder`.
 ///
 /// # Errors
-/// Where the file cannot be read, the data are not base64, or the URI is absolute or of a scheme
-/// other than `data`: a model is not to reach for things outside of where it lies.
+/// Where the file cannot be read, the data are not base64, or the URI is an absolute path or of a
+/// scheme other than `data`.
 pub fn read(folder: &Path, uri: &str) -> Result<Vec<u8>, Problem> {
     if let Some(data) = strip_scheme(uri, "data:") {
         return decode_data(data);
@@ -77,10 +80,10 @@ fn local_path(folder: &Path, name: &str) -> Result<PathBuf, Problem> {
         return refuse("is not a file name");
     }
     if name.starts_with(['/', '\\']) || Path::new(name).is_absolute() {
-        return refuse("is an absolute path; only files beside the model are read");
+        return refuse("is an absolute path; only paths relative to the model are read");
     }
     if has_scheme(name) {
-        return refuse("is not a file; only files beside the model are read");
+        return refuse("is not a path; only paths relative to the model are read");
     }
     Ok(folder.join(name))
 }
@@ -116,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn only_files_beside_the_model_are_read() {
+    fn absolute_paths_and_schemes_are_refused() {
         for uri in [
             "/etc/x",
             "%2Fetc/x",

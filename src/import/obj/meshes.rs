@@ -33,6 +33,7 @@ pub fn build(
         face: Vec::new(),
         flat_polygons: 0,
         crossed_polygons: 0,
+        large_polygons: 0,
         infinite_vertices: 0,
     };
     let runs = runs_by_part(geometry);
@@ -49,6 +50,11 @@ pub fn build(
         WarningCode::BadFace,
         "polygons cross themselves, and their triangles overlap",
         builder.crossed_polygons,
+    );
+    warnings.add_many(
+        WarningCode::BadFace,
+        "polygons are too large to be clipped, and their triangles may overlap",
+        builder.large_polygons,
     );
     warnings.add_many(
         WarningCode::NonFiniteVertex,
@@ -76,6 +82,7 @@ struct Builder<'a> {
     face: Vec<u32>,
     flat_polygons: u64,
     crossed_polygons: u64,
+    large_polygons: u64,
     infinite_vertices: u64,
 }
 
@@ -118,6 +125,7 @@ impl Builder<'_> {
             Outcome::Covered => {}
             Outcome::NoArea => self.flat_polygons += 1,
             Outcome::Overlapping => self.crossed_polygons += 1,
+            Outcome::TooLarge => self.large_polygons += 1,
         }
     }
 

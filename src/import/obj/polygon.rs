@@ -4,10 +4,16 @@ use earcut::Earcut;
 
 use crate::math::DVec3;
 
-/// Clipping the ears of a polygon that crosses itself takes time that grows with the square of
-/// its corners. This many corners squared, a few seconds, may be spent so on one file; what is
-/// beyond is fanned.
+/// Clipping takes time that grows with the square of the corners, for polygons that cross themselves
+/// more than for others. Those with more corners than this, which take 5 to 20 seconds, are fanned.
+const MOST_CORNERS: usize = 1 << 17;
+
+/// Once polygons of a file that crossed themselves had this many corners squared, a second or two,
+/// large ones are no longer clipped.
 const MOST_WASTED: u64 = 1 << 30;
+
+/// Polygons of up to this many corners are always clipped: the time is in proportion to the file.
+const SMALL: usize = 256;
 
 /// What came out of a polygon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,8 +22,10 @@ pub enum Outcome {
     Covered,
     /// It has no area; its triangles have none either, or cancel out.
     NoArea,
-    /// It crosses itself, or is larger than can be clipped: triangles that overlap.
+    /// It crosses itself: triangles that overlap.
     Overlapping,
+    /// It is too large to be clipped in good time: a fan, whose triangles may overlap.
+    TooLarge,
 }
 
 /// Cuts polygons into triangles, and keeps its buffers from one to the next.
@@ -26,7 +34,7 @@ pub struct Triangulator {
     flat: Vec<[f64; 2]>,
     cut: Vec<u32>,
     triangles: Vec<[u32; 3]>,
-    /// Sum of the squared numbers of corners of polygons that crossed themselves.
+    /// Sum of the squared numbers of corners of large polygons that crossed themselves.
     wasted: u64,
 }
 
@@ -73,9 +81,9 @@ impl Triangulator {
         let Some(normal) = area.try_normalize().filter(|_| has_area(ring, area)) else {
             return Outcome::NoArea;
         };
-        let steps = (ring.len() as u64).saturating_pow(2);
-        if self.wasted.saturating_add(steps) > MOST_WASTED {
-            return Outcome::Overlapping;
+        let is_small = ring.len() <= SMALL;
+        if ring.len() > MOST_CORNERS || (!is_small && self.wasted > MOST_WASTED) {
+            return Outcome::TooLarge;
         }
         let (u, v) = normal.any_orthonormal_pair();
         let flatten = |&p: &DVec3| [(p - ring[0]).dot(u), (p - ring[0]).dot(v)];
@@ -91,7 +99,9 @@ impl Triangulator {
         } else {
             // A fan at least keeps the border; what was clipped may have lost parts of it.
             self.triangles.clear();
-            self.wasted += steps;
+            if !is_small {
+                self.wasted += (ring.len() as u64).pow(2);
+            }
             Outcome::Overlapping
         }
     }

@@ -6,8 +6,10 @@ use std::path::{Path, PathBuf};
 /// Finds the file that `name` means to a file in the first of `folders`; `None` where there is none.
 ///
 /// Backslashes separate folders as slashes do, and the case of letters counts only where two
-/// names differ in nothing else. What is not at its place is looked for in the other folders,
-/// and then by its last part alone: names are often absolute, from the author's own machine.
+/// names differ in nothing else. Absolute names and those that lead out of the folder with `..` are
+/// opened where they point, since other programs write such names. What is not at its place is
+/// looked for in the other folders, and then by its last part alone: absolute names are often of
+/// the author's own machine.
 pub fn find(name: &str, folders: &[&Path]) -> Option<PathBuf> {
     let name = name.trim().trim_matches('"').replace('\\', "/");
     let last = name.rsplit('/').next().unwrap_or_default();

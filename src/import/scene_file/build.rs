@@ -9,10 +9,11 @@ use super::document::{Node, Source};
 use super::model::Models;
 use super::nearest::suggestion;
 use super::section::Section;
+use super::settings::BackgroundSection;
 use super::{light, material, settings};
 use crate::color::Rgb;
 use crate::import::{ImportError, ImportOptions, Imported, Warnings};
-use crate::scene::{Scene, Settings};
+use crate::scene::{Background, Scene, Settings};
 
 const SECTIONS: &[&str] = &[
     "camera",
@@ -34,20 +35,23 @@ pub fn build(
     let root = Section::new(source, root, "", SECTIONS)?;
     let settings = settings::read(&root)?;
     let camera = CameraSection::read(&root)?;
+    let background = settings::background(&root)?;
     let mut warnings = Warnings::default();
     let mut scene = scene(&root, options, &mut warnings)?;
     let view = place_camera(&mut scene, camera, &settings, &source.path, options)?;
     let lights = light_up(&mut scene, &root);
-    let ambient = surround(&mut scene, &root, &lights);
+    scene.background = surround(background, &lights);
+    let was_changed = background.ambient.is_none() && !lights.is_empty();
+    let changed = was_changed.then_some(&scene.background);
     Ok(Imported {
-        defaults: defaults::report(view.as_ref(), ambient, &lights),
+        defaults: defaults::report(view.as_ref(), changed, &lights),
         scene,
         settings,
         warnings,
     })
 }
 
-/// Models, materials, lights and background; the cameras are those of the models.
+/// Models, materials and lights; the cameras are those of the models.
 fn scene(
     root: &Section,
     options: &SceneOptions,
@@ -56,7 +60,6 @@ fn scene(
     let source = root.source;
     let materials = material::read_all(source, root.list("material")?, warnings)?;
     let mut scene = Scene {
-        background: settings::background(root)?,
         materials: materials.clone(),
         ..Scene::default()
     };
@@ -87,7 +90,9 @@ fn place_camera(
     options: &SceneOptions,
 ) -> Result<Option<View>, ImportError> {
     if let Some(name) = &options.camera {
-        choose(scene, name).map_err(|problem| ImportError::invalid(path, problem))?;
+        choose(scene, name).map_err(|problem| {
+            ImportError::invalid_at(path, format!("--camera {name}"), problem)
+        })?;
         // A lens that belongs to a view of the scene file does not fit another camera.
         if section.own.is_some() {
             return Ok(None);
@@ -151,12 +156,15 @@ fn light_up(scene: &mut Scene, root: &Section) -> Vec<RigLight> {
     Vec::from(rig)
 }
 
-/// Gives a scene with default lights the default ambient light too, if it has no `[background]`;
-/// returns it, if it was added.
-fn surround(scene: &mut Scene, root: &Section, lights: &[RigLight]) -> Option<Rgb> {
-    if lights.is_empty() || root.value("background").is_some() {
-        return None;
+/// The background: where the file does not say how much ambient light there is, default lights bring some.
+fn surround(section: BackgroundSection, lights: &[RigLight]) -> Background {
+    let default = if lights.is_empty() {
+        Rgb::BLACK
+    } else {
+        defaults::AMBIENT
+    };
+    Background {
+        radiance: section.radiance,
+        ambient: section.ambient.unwrap_or(default),
     }
-    scene.background.ambient = defaults::AMBIENT;
-    Some(defaults::AMBIENT)
 }

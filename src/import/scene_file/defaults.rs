@@ -11,12 +11,12 @@ use crate::camera::Camera;
 use crate::color::Rgb;
 use crate::light::Light;
 use crate::math::DVec3;
-use crate::scene::Placed;
+use crate::scene::{Background, Placed};
 
 /// What was added to a scene that lacked it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Defaults {
-    /// The lines of a scene file that say the same.
+    /// The sections of a scene file that say the same; each takes the place of one that is there.
     pub text: String,
     /// How many of the scene's cameras were added: 0 or 1. It is the first.
     pub cameras: usize,
@@ -125,10 +125,15 @@ impl RigLight {
     }
 }
 
-/// What was added, in the words of a scene file; `None` where nothing was.
-pub fn report(view: Option<&View>, ambient: Option<Rgb>, lights: &[RigLight]) -> Option<Defaults> {
+/// What was added, in the words of a scene file; `None` where nothing was. Sections that the file has
+/// in part are whole in it, to take the place of those.
+pub fn report(
+    view: Option<&View>,
+    background: Option<&Background>,
+    lights: &[RigLight],
+) -> Option<Defaults> {
     let mut parts: Vec<String> = view.map(print::view).into_iter().collect();
-    parts.extend(ambient.map(print::ambient));
+    parts.extend(background.map(print::background));
     parts.extend(lights.iter().map(print::rig_light));
     (!parts.is_empty()).then(|| Defaults {
         text: parts.join("\n"),

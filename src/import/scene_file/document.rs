@@ -3,13 +3,12 @@
 //! Text comes in; the tree goes to [`super::overrides`], which changes it, and then to
 //! [`super::section`], which reads it. Places stay those of the original text.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use toml::de::{DeArray, DeTable, DeValue};
 
-use crate::import::{ImportError, Problem};
+use crate::import::{ImportError, Problem, files};
 
 /// Where a key or a value was written.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,7 +74,7 @@ impl Source {
     /// # Errors
     /// Where it cannot be read, or is not UTF-8.
     pub fn read(path: &Path) -> Result<Self, ImportError> {
-        let bytes = fs::read(path).map_err(|error| ImportError::io(path, error))?;
+        let bytes = files::read(path).map_err(|error| ImportError::io(path, error))?;
         let text = String::from_utf8(bytes).map_err(|error| {
             let valid = &error.as_bytes()[..error.utf8_error().valid_up_to()];
             ImportError::invalid_at(path, line_of(valid), "not text in UTF-8")
@@ -100,10 +99,9 @@ impl Source {
     /// Where the text is not TOML.
     pub fn parse(&self) -> Result<Node, ImportError> {
         let table = DeTable::parse(&self.text).map_err(|error| {
-            let place = error
-                .span()
-                .map_or(Place::Implied, |span| Place::Text(span.start));
-            self.invalid(&place, error.message())
+            // Of tables too deep the parser does not say where they are; the file begins somewhere.
+            let start = error.span().map_or(0, |span| span.start);
+            self.invalid(&Place::Text(start), error.message())
         })?;
         let at = |offset| Place::Text(offset);
         Ok(Node {

@@ -145,7 +145,6 @@ use std::path::Path;
 use super::{ImportError, Imported};
 pub use defaults::Defaults;
 use document::{Entry, Kind, Node, Source};
-pub use print::settings as settings_to_toml;
 
 /// How to import a scene.
 #[derive(Clone, Debug, Default)]

@@ -11,7 +11,10 @@ use super::placement::Placement;
 use super::section::Section;
 use super::value::Value;
 use crate::camera::Camera;
-use crate::import::{ImportError, ImportOptions, Imported, WarningCode, Warnings, import_model};
+use crate::import::{
+    ImportError, ImportOptions, Imported, NOT_A_MODEL, WarningCode, Warnings, import_model,
+    is_model,
+};
 use crate::light::Light;
 use crate::material::Material;
 use crate::scene::{Instance, Placed, Scene};
@@ -100,6 +103,9 @@ impl<'a> Models<'a> {
         if is_named_here && !path.is_file() {
             let message = format!("there is no file \"{name}\" ({})", path.display());
             return Err(file.invalid(message));
+        }
+        if is_named_here && !is_model(&path) {
+            return Err(file.invalid(format!("\"{name}\" is {NOT_A_MODEL}")));
         }
         let key = path.canonicalize().unwrap_or_else(|_| path.clone());
         match self.loaded.entry(key) {

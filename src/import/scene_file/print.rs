@@ -1,4 +1,4 @@
-//! Settings, cameras and lights back to the words of a scene file.
+//! The camera, background and lights back to the words of a scene file.
 //!
 //! Numbers are printed with as many digits as it takes to read the same number again.
 
@@ -6,34 +6,9 @@ use std::fmt::Write;
 
 use super::camera::View;
 use super::defaults::RigLight;
-use super::settings::{INTEGRATORS, PATTERNS, TARGETS};
 use crate::color::Rgb;
 use crate::math::DVec3;
-use crate::scene::Settings;
-
-/// `settings` as `[film]`, `[sampling]` and `[integrator]` of a scene file, every key written out.
-///
-/// `light_samples`, an option of the command line that no key stands for, becomes a comment.
-pub fn settings(settings: &Settings) -> String {
-    let sampling = &settings.sampling;
-    let light_samples = settings.light_samples.map_or_else(String::new, |samples| {
-        format!("# every light: samples = {samples}\n")
-    });
-    light_samples
-        + &format!(
-            "[film]\nsize = [{}, {}]\n\n\
-         [sampling]\nsamples = {}\npattern = \"{}\"\ntarget = \"{}\"\nseed = {}\n\n\
-         [integrator]\nkind = \"{}\"\nmax_depth = {}\n",
-            settings.size.x,
-            settings.size.y,
-            sampling.samples,
-            name_of(PATTERNS, sampling.pattern),
-            name_of(TARGETS, sampling.target),
-            sampling.seed,
-            name_of(INTEGRATORS, settings.integrator),
-            settings.max_depth,
-        )
-}
+use crate::scene::Background;
 
 /// `[camera]`.
 pub fn view(view: &View) -> String {
@@ -54,9 +29,16 @@ pub fn view(view: &View) -> String {
     text
 }
 
-/// `[background]` with nothing but ambient light.
-pub fn ambient(Rgb { r, g, b }: Rgb) -> String {
-    format!("[background]\nambient = [{r:?}, {g:?}, {b:?}]\n")
+/// `[background]`.
+pub fn background(background: &Background) -> String {
+    let color = |Rgb { r, g, b }: Rgb| format!("[{r:?}, {g:?}, {b:?}]");
+    let mut text = "[background]\n".to_owned();
+    // Writing to a string cannot fail.
+    if background.radiance != Rgb::BLACK {
+        let _ = writeln!(text, "radiance = {}", color(background.radiance));
+    }
+    let _ = writeln!(text, "ambient = {}", color(background.ambient));
+    text
 }
 
 /// `[[light]]`.
@@ -72,9 +54,4 @@ pub fn rig_light(light: &RigLight) -> String {
 
 fn vector(v: DVec3) -> String {
     format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z)
-}
-
-fn name_of<T: PartialEq>(names: &[(&'static str, T)], value: T) -> &'static str {
-    let found = names.iter().find(|(_, other)| *other == value);
-    found.map_or("", |(name, _)| name)
 }

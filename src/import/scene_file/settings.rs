@@ -6,7 +6,7 @@ use crate::color::Rgb;
 use crate::import::ImportError;
 use crate::math::UVec2;
 use crate::sampling::{Pattern, SamplingConfig, Target};
-use crate::scene::{Background, IntegratorKind, Settings};
+use crate::scene::{IntegratorKind, Settings};
 
 /// Most pixels along one side of a picture.
 const MAX_SIDE: u32 = 65_536;
@@ -18,7 +18,7 @@ const MAX_SAMPLES: u32 = 1 << 30;
 const MAX_DEPTH: u32 = 1024;
 
 /// The patterns by name.
-pub const PATTERNS: &[(&str, Pattern)] = &[
+const PATTERNS: &[(&str, Pattern)] = &[
     ("grid", Pattern::Grid),
     ("jittered", Pattern::Jittered),
     ("random", Pattern::Random),
@@ -26,11 +26,10 @@ pub const PATTERNS: &[(&str, Pattern)] = &[
 ];
 
 /// The targets by name.
-pub const TARGETS: &[(&str, Target)] =
-    &[("rectangle", Target::Rectangle), ("circle", Target::Circle)];
+const TARGETS: &[(&str, Target)] = &[("rectangle", Target::Rectangle), ("circle", Target::Circle)];
 
 /// The integrators by name.
-pub const INTEGRATORS: &[(&str, IntegratorKind)] = &[
+const INTEGRATORS: &[(&str, IntegratorKind)] = &[
     ("whitted", IntegratorKind::Whitted),
     ("normal", IntegratorKind::Normal),
     ("depth", IntegratorKind::Depth),
@@ -60,23 +59,32 @@ pub fn read(root: &Section) -> Result<Settings, ImportError> {
     Ok(settings)
 }
 
-/// Reads `[background]` of `root`; black where it is left out.
-pub fn background(root: &Section) -> Result<Background, ImportError> {
+/// What `[background]` says.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct BackgroundSection {
+    /// Black where it is left out.
+    pub radiance: Rgb,
+    /// `None` where it is left out: what that means depends on the lights.
+    pub ambient: Option<Rgb>,
+}
+
+/// Reads `[background]` of `root`.
+pub fn background(root: &Section) -> Result<BackgroundSection, ImportError> {
     let Some(value) = root.value("background") else {
-        return Ok(Background::default());
+        return Ok(BackgroundSection::default());
     };
     let keys = &["radiance", "ambient", "environment", "rotate"];
     let section = Section::new(root.source, value.node, "[background]", keys)?;
     for key in ["environment", "rotate"] {
         if let Some(value) = section.value(key) {
-            let what = format!("\"{key}\" (an environment map) in this version");
+            let what = format!("\"{key}\" (an environment map)");
             return Err(root.source.unsupported(&value.node.place, what));
         }
     }
     let color = |key| section.get(key, |v| v.color(NON_NEGATIVE));
-    Ok(Background {
-        radiance: color("radiance")?.unwrap_or(Rgb::BLACK),
-        ambient: color("ambient")?.unwrap_or(Rgb::BLACK),
+    Ok(BackgroundSection {
+        radiance: color("radiance")?.unwrap_or_default(),
+        ambient: color("ambient")?,
     })
 }
 
@@ -113,7 +121,7 @@ fn sampling(value: Value) -> Result<SamplingConfig, ImportError> {
 
 fn integrator(value: Value) -> Result<IntegratorKind, ImportError> {
     if value.string()? == "path" {
-        let what = "the integrator \"path\" in this version";
+        let what = "the integrator \"path\"";
         return Err(value.source.unsupported(&value.node.place, what));
     }
     value.one_of(INTEGRATORS)

@@ -5,19 +5,33 @@ use std::path::{Path, PathBuf};
 
 use super::super::search::find;
 use super::map::Map;
+use crate::import::budget::Budget;
 use crate::import::{WarningCode, Warnings, images};
 use crate::math::{Affine2, Vec2};
 use crate::texture::{Filter, Image, ImageId, Pixels, Texture, TextureId, TextureRef, Wrap};
 
 /// The textures of a scene, as materials ask for them.
-#[derive(Default)]
 pub struct Textures {
     /// Images that could be read, in the order of their first use.
     pub images: Vec<Image>,
     /// Their uses with different wrapping.
     pub textures: Vec<Texture>,
-    /// By file; `None` for those that could not be read.
+    /// By file, whatever name it goes by; `None` for those that could not be read.
     read: HashMap<PathBuf, Option<ImageId>>,
+    /// For the pixels of all images.
+    budget: Budget,
+}
+
+impl Default for Textures {
+    /// None yet.
+    fn default() -> Self {
+        Self {
+            images: Vec::new(),
+            textures: Vec::new(),
+            read: HashMap::new(),
+            budget: Budget::for_pixels(0),
+        }
+    }
 }
 
 impl Textures {
@@ -41,18 +55,19 @@ impl Textures {
             let message = format!("option {option} of texture {:?} is not shown", map.file);
             warnings.add(WarningCode::Approximated, message);
         }
-        let image = self.image(path, warnings)?;
+        let image = self.image(&path, warnings)?;
         Some(TextureRef {
             transform: transform(map),
             ..TextureRef::new(self.texture(image, map.is_clamped))
         })
     }
 
-    fn image(&mut self, path: PathBuf, warnings: &mut Warnings) -> Option<ImageId> {
-        if let Some(&known) = self.read.get(&path) {
+    fn image(&mut self, path: &Path, warnings: &mut Warnings) -> Option<ImageId> {
+        let key = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        if let Some(&known) = self.read.get(&key) {
             return known;
         }
-        let id = match images::read(&path) {
+        let id = match images::read(path, &self.budget) {
             Ok(image) => {
                 self.images.push(image);
                 Some(ImageId(self.images.len() as u32 - 1))
@@ -62,7 +77,7 @@ impl Textures {
                 None
             }
         };
-        self.read.insert(path, id);
+        self.read.insert(key, id);
         id
     }
 

@@ -1,12 +1,12 @@
 //! A bound on the memory that a file may ask for.
 //!
-//! A few bytes of glTF can ask for any amount of memory: accessors without data, one mesh in a
-//! thousand skins, a million instances. Everything that is made from a file is charged to a
-//! budget in proportion to the bytes that were read, before it is allocated.
+//! A few bytes can ask for any amount of memory: an accessor of glTF without data, one mesh in a
+//! thousand skins, a million instances, images of one colour. What is made from a file is charged
+//! to a budget in proportion to the bytes that were read, before it is allocated.
 
 use std::cell::Cell;
 
-use crate::import::Problem;
+use super::Problem;
 
 /// What the geometry of every file may use, however small it is.
 const GEOMETRY_FLOOR_BYTES: u64 = 64 << 20;
@@ -25,7 +25,7 @@ const ZEROS_FLOOR_BYTES: u64 = 1 << 20;
 /// Memory that may still be taken.
 #[derive(Debug)]
 pub struct Budget {
-    file_bytes: u64,
+    file_bytes: Cell<u64>,
     left: Cell<u64>,
 }
 
@@ -42,9 +42,17 @@ impl Budget {
 
     fn new(floor: u64, file_bytes: u64) -> Self {
         Self {
-            file_bytes,
+            file_bytes: Cell::new(file_bytes),
             left: Cell::new(floor.saturating_add(FACTOR.saturating_mul(file_bytes))),
         }
+    }
+
+    /// Allows what a further file of `file_bytes` bytes may use.
+    pub fn add_file(&self, file_bytes: u64) {
+        let more = FACTOR.saturating_mul(file_bytes);
+        self.left.set(self.left.get().saturating_add(more));
+        let total = self.file_bytes.get().saturating_add(file_bytes);
+        self.file_bytes.set(total);
     }
 
     /// Takes `bytes`.
@@ -66,7 +74,8 @@ impl Budget {
     /// # Errors
     /// Where they are not.
     pub fn check_zeros(&self, bytes: u64) -> Result<(), Problem> {
-        let allowed = ZEROS_FLOOR_BYTES.saturating_add(FACTOR.saturating_mul(self.file_bytes));
+        let allowed =
+            ZEROS_FLOOR_BYTES.saturating_add(FACTOR.saturating_mul(self.file_bytes.get()));
         if bytes > allowed {
             return Err(self.refuse());
         }
@@ -76,7 +85,7 @@ impl Budget {
     fn refuse(&self) -> Problem {
         Problem::Invalid(format!(
             "asks for far more memory than its {} bytes account for",
-            self.file_bytes
+            self.file_bytes.get()
         ))
     }
 }
