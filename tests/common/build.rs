@@ -6,12 +6,13 @@ use halfshade::color::Rgb;
 use halfshade::film::{Film, Rect};
 use halfshade::integrate::{Integrator, RayLog, Whitted};
 use halfshade::light::{Falloff, Light, PointLight};
-use halfshade::material::{Material, MaterialId};
+use halfshade::material::{Material, MaterialId, MetallicRoughness, Phong, Surface};
 use halfshade::math::{DAffine3, DVec3, Ray, UVec2, UnitVec3, Vec3};
-use halfshade::prepare::prepare;
+use halfshade::prepare::{PreparedScene, prepare};
 use halfshade::render::{Job, render};
 use halfshade::sampling::Sampler;
 use halfshade::scene::{Instance, Mesh, MeshId, Placed, Scene, Settings};
+use halfshade::texture::{Filter, Image, ImageId, Pixels, Texture, TextureId, TextureRef, Wrap};
 use std::sync::atomic::AtomicBool;
 
 /// Adds a mesh with its own material.
@@ -100,6 +101,45 @@ pub fn add_sphere(scene: &mut Scene, center: Vec3, radius: f32, rows: u32, mater
     add_mesh(scene, positions, indices, material);
 }
 
+/// A material of glTF's metallic-roughness model: `edit` changes it from what glTF says of one
+/// that says nothing.
+pub fn metallic_roughness(edit: impl FnOnce(&mut MetallicRoughness)) -> Material {
+    let mut surface = MetallicRoughness::default();
+    edit(&mut surface);
+    Material {
+        surface: Surface::MetallicRoughness(Box::new(surface)),
+        ..Material::matte("metallic-roughness", Rgb::BLACK)
+    }
+}
+
+/// A Phong material: `edit` changes it from one that reflects nothing.
+pub fn phong(edit: impl FnOnce(&mut Phong)) -> Material {
+    let mut phong = Phong::matte(Rgb::BLACK);
+    edit(&mut phong);
+    Material {
+        surface: Surface::Phong(phong),
+        ..Material::matte("phong", Rgb::BLACK)
+    }
+}
+
+/// Adds an image of linear values, `width` pixels across, that repeats and is not filtered.
+pub fn add_texture(scene: &mut Scene, width: u32, pixels: Vec<[f32; 4]>) -> TextureRef {
+    let image = ImageId(scene.images.len() as u32);
+    scene.images.push(Image {
+        name: String::new(),
+        width,
+        height: pixels.len() as u32 / width,
+        pixels: Pixels::Rgba32F(pixels),
+    });
+    let texture = TextureId(scene.textures.len() as u32);
+    scene.textures.push(Texture {
+        image,
+        wrap: [Wrap::Repeat; 2],
+        filter: Filter::Nearest,
+    });
+    TextureRef::new(texture)
+}
+
 /// Adds any light; its own coordinates are the world's.
 pub fn add_light(scene: &mut Scene, light: Light) {
     scene.lights.push(Placed {
@@ -123,10 +163,24 @@ pub fn point_light(position: Vec3, intensity: f32, radius: f32, samples: u32) ->
 /// Radiance that comes back along a world-space ray, averaged over `samples` camera samples that
 /// all take this ray.
 pub fn radiance(scene: &Scene, origin: Vec3, direction: Vec3, settings: &Settings) -> Rgb {
-    let prepared = prepare(scene, Builder::default()).scene;
+    radiance_in(
+        &prepare(scene, Builder::default()).scene,
+        origin,
+        direction,
+        settings,
+    )
+}
+
+/// As [`radiance`], in a scene that is prepared already.
+pub fn radiance_in(
+    prepared: &PreparedScene,
+    origin: Vec3,
+    direction: Vec3,
+    settings: &Settings,
+) -> Rgb {
     let origin = prepared.placement.point(origin.as_dvec3());
     let direction = UnitVec3::normalize(direction).expect("a direction");
-    let integrator = Whitted::new(&prepared, settings);
+    let integrator = Whitted::new(prepared, settings);
     let mut log = RayLog::default();
     let count = settings.sampling.samples_per_pixel();
     let mut sum = [0.0f64; 3];
@@ -162,8 +216,13 @@ pub fn look_at(position: Vec3, target: Vec3) -> Placed<Camera> {
 /// Renders the whole film.
 pub fn picture(scene: &Scene, camera: &Placed<Camera>, settings: &Settings) -> Film {
     let prepared = prepare(scene, Builder::default()).scene;
+    picture_of(&prepared, camera, settings)
+}
+
+/// As [`picture`], of a scene that is prepared already.
+pub fn picture_of(prepared: &PreparedScene, camera: &Placed<Camera>, settings: &Settings) -> Film {
     let job = Job {
-        scene: &prepared,
+        scene: prepared,
         camera: prepared.camera(camera),
         settings,
         crop: Rect::full(settings.size),
@@ -178,4 +237,16 @@ pub fn bits(film: &Film) -> Vec<[u32; 3]> {
         .iter()
         .map(|c| c.channels().map(f32::to_bits))
         .collect()
+}
+
+/// Root of the mean squared difference of two pictures over that of the first.
+pub fn relative_rmse(expected: &Film, got: &Film) -> f64 {
+    let (mut difference, mut size) = (0.0, 0.0);
+    for (a, b) in expected.means().iter().zip(got.means()) {
+        for (a, b) in a.channels().into_iter().zip(b.channels()) {
+            difference += f64::from(a - b).powi(2);
+            size += f64::from(a).powi(2);
+        }
+    }
+    (difference / size).sqrt()
 }

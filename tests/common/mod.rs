@@ -3,3 +3,4 @@
 
 pub mod build;
 pub mod chi_square;
+pub mod floor;
