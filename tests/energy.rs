@@ -51,8 +51,8 @@ fn wo(degrees_above: f64) -> UnitVec3 {
 /// Share of the light that comes to `wo` under a sky of radiance 1, around the normal z: by
 /// rings around the mirror direction up to `reach` radians wide, the narrower the nearer to it.
 fn albedo_within(bsdf: &Bsdf, wo: UnitVec3, reach: f64) -> f64 {
-    const RINGS: u32 = 600;
-    const SPOKES: u32 = 120;
+    const RINGS: u32 = 400;
+    const SPOKES: u32 = 64;
     let mirror = DVec3::new(-f64::from(wo.x), -f64::from(wo.y), f64::from(wo.z)).normalize();
     let (a, b) = mirror.any_orthonormal_pair();
     let least = 1e-7f64;
