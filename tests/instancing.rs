@@ -55,7 +55,7 @@ fn number(i: u32, dimension: u32) -> f64 {
 fn pose(i: u32) -> DAffine3 {
     let axis = DVec3::new(number(i, 0) - 0.5, number(i, 1) - 0.4, number(i, 2) - 0.6).normalize();
     let size = 0.05 + 0.25 * number(i, 3);
-    let mirror = if i % 3 == 0 { -1.0 } else { 1.0 };
+    let mirror = if i.is_multiple_of(3) { -1.0 } else { 1.0 };
     let scale = DVec3::new(size, size * (0.5 + number(i, 4)), size * mirror);
     let place = DVec3::new(number(i, 0), 0.4 * number(i, 1), number(i, 2)) * 6.0
         - DVec3::new(3.0, 0.0, 3.0);
