@@ -58,10 +58,10 @@ fn add_instance(scene: &mut Scene, mesh: Mesh, material: Material, transform: DA
 /// Where a tile's tangents come from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Tangents {
-    FromFile,
-    FromUvs,
-    FromMirroredUvs,
-    FromFileOnMirroredUvs,
+    File,
+    Uvs,
+    MirroredUvs,
+    FileOnMirroredUvs,
 }
 
 /// Radiance of the middle of a tile whose normals a map bends to `texel`, with a light towards
@@ -81,13 +81,13 @@ fn bent(
         is_height: false,
     });
     let mesh = match tangents {
-        Tangents::FromUvs => tile(false),
-        Tangents::FromMirroredUvs => tile(true),
-        Tangents::FromFile => {
+        Tangents::Uvs => tile(false),
+        Tangents::MirroredUvs => tile(true),
+        Tangents::File => {
             let tangents = vec![[1.0, 0.0, 0.0, 1.0]; 4];
             tile(false).with_tangents(tangents).unwrap()
         }
-        Tangents::FromFileOnMirroredUvs => {
+        Tangents::FileOnMirroredUvs => {
             let tangents = vec![[-1.0, 0.0, 0.0, -1.0]; 4];
             tile(true).with_tangents(tangents).unwrap()
         }
@@ -123,10 +123,10 @@ fn normal_maps_bend_to_the_side_that_the_file_says() {
     let (red, green) = ([slope, 0.5, slope, 1.0], [0.5, slope, slope, 1.0]);
     let diagonal = |x: f32, z: f32| Vec3::new(x, 1.0, z).normalize();
     for (tangents, u) in [
-        (Tangents::FromFile, 1.0),
-        (Tangents::FromUvs, 1.0),
-        (Tangents::FromMirroredUvs, -1.0),
-        (Tangents::FromFileOnMirroredUvs, -1.0),
+        (Tangents::File, 1.0),
+        (Tangents::Uvs, 1.0),
+        (Tangents::MirroredUvs, -1.0),
+        (Tangents::FileOnMirroredUvs, -1.0),
     ] {
         for (texel, toward) in [(red, diagonal(u, 0.0)), (green, diagonal(0.0, -1.0))] {
             let away = toward * Vec3::new(-1.0, 1.0, -1.0);
