@@ -46,8 +46,8 @@ pub enum Glossy {
         /// Reflectance at normal and at grazing incidence of the dielectric alone: what it
         /// reflects does not reach the diffuse layer below.
         dielectric: [f32; 2],
-        /// Share of the lobe, in `[0, 1]`, that no mirror ray follows.
-        unmirrored: f32,
+        /// What of `f0` and `f90` no mirror ray follows.
+        unmirrored: (Rgb, f32),
     },
 }
 
@@ -123,9 +123,12 @@ impl Bsdf {
                 let Some(half) = UnitVec3::normalize(*wo + *wi) else {
                     return Rgb::BLACK;
                 };
-                let cos = wo.dot(*half);
-                diffuse * entering(dielectric, cos)
-                    + schlick(f0, f90, cos) * ggx(normal, wo, wi, half, alpha)
+                // In and out through the coat, each at its own angle: appendix B of the glTF
+                // specification takes both at the half vector, and makes energy at grazing views.
+                let through =
+                    entering(dielectric, normal.dot(*wo)) * entering(dielectric, normal.dot(*wi));
+                let reflected = schlick(f0, f90, wo.dot(*half));
+                diffuse * through + reflected * ggx(normal, wo, wi, half, alpha)
             }
         }
     }
@@ -139,8 +142,7 @@ impl Bsdf {
             ..
         } = &mut self.glossy
         {
-            *f0 = *f0 * *unmirrored;
-            *f90 *= *unmirrored;
+            (*f0, *f90) = *unmirrored;
         }
         self
     }
@@ -152,12 +154,13 @@ impl Bsdf {
             Glossy::None => self.diffuse,
             Glossy::Phong { reflectance, .. } => self.diffuse + reflectance,
             Glossy::Ggx {
-                f0,
-                f90,
                 dielectric,
-                unmirrored,
+                unmirrored: (f0, f90),
                 ..
-            } => self.diffuse * entering(dielectric, cos_o) + schlick(f0, f90, cos_o) * unmirrored,
+            } => {
+                let through = entering(dielectric, cos_o) * mean_entering(dielectric);
+                self.diffuse * through + schlick(f0, f90, cos_o)
+            }
         }
     }
 }
@@ -169,6 +172,12 @@ fn schlick(f0: Rgb, f90: f32, cos: f32) -> Rgb {
 /// Share that passes a dielectric of reflectance `f0` and `f90` to the layer below.
 fn entering([f0, f90]: [f32; 2], cos: f32) -> f32 {
     1.0 - (f0 + (f90 - f0) * schlick_weight(cos))
+}
+
+/// Mean of [`entering`] over the hemisphere, weighted by the cosine: that of Schlick's weight is
+/// 1/21.
+fn mean_entering([f0, f90]: [f32; 2]) -> f32 {
+    1.0 - (f0 + (f90 - f0) / 21.0)
 }
 
 fn phong_lobe(normal: UnitVec3, wo: UnitVec3, wi: UnitVec3, exponent: f32) -> f32 {

@@ -75,22 +75,24 @@ impl MetallicRoughness {
         let f90 = strength + (1.0 - strength) * metallic;
 
         let transmission = lookup.scalar(&self.transmission).clamp(0.0, 1.0);
-        let glass = (1.0 - metallic) * transmission;
         // Glass gets its mirror image from Fresnel's equations on what it transmits.
-        let mirror = (1.0 - glass) * (1.0 - roughness / MIRROR_ROUGHNESS).max(0.0).powi(2);
+        let solid = (1.0 - metallic) * (1.0 - transmission);
+        let solid_f0 = base * metallic + dielectric * solid;
+        let solid_f90 = metallic + strength * solid;
+        let mirror = (1.0 - roughness / MIRROR_ROUGHNESS).max(0.0).powi(2);
         Bsdf {
-            diffuse: base * ((1.0 - metallic) * (1.0 - transmission)),
+            diffuse: base * solid,
             glossy: Glossy::Ggx {
                 f0,
                 f90,
                 alpha: (roughness * roughness).max(MIN_ALPHA),
                 dielectric: [dielectric.max_channel(), strength],
-                unmirrored: 1.0 - glass - mirror,
+                unmirrored: (solid_f0 * (1.0 - mirror), solid_f90 * (1.0 - mirror)),
             },
             specular: Specular {
-                reflect: f0 * mirror,
-                reflect_grazing: (Rgb::splat(f90) - f0) * mirror,
-                transmit: base * glass,
+                reflect: solid_f0 * mirror,
+                reflect_grazing: (Rgb::splat(solid_f90) - solid_f0) * mirror,
+                transmit: base * ((1.0 - metallic) * transmission),
                 index_of_refraction: self.index_of_refraction,
                 is_thin: self.thickness.factor == 0.0,
             },
