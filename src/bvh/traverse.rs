@@ -7,7 +7,7 @@ use super::caster::{Caster, FAR_PAD, Window};
 use super::count::Counter;
 use super::hit::{Hit, Search, key};
 use super::layout::{Block, ChildRef, Node};
-use super::simd::{Lanes, Stack};
+use super::simd::{Entry, Lanes, Stack, StackSpace};
 use crate::math::UNIT_ROUNDOFF;
 
 /// A ray's constants for the box test, in vectors.
@@ -38,16 +38,17 @@ impl<S> BoxTest<S> {
     where
         S: Lanes<W>,
     {
-        let (mut enter, mut leave) = (near, far);
-        for axis in 0..3 {
-            let side = self.near_side[axis];
-            let near = S::load(&node.planes[side][axis]);
-            let far = S::load(&node.planes[1 - side][axis]);
-            let near = near.mul_sub(self.inverse[axis], self.near_offset[axis]);
-            let far = far.mul_sub(self.inverse[axis], self.far_offset[axis]);
-            enter = near.max(enter);
-            leave = far.min(leave);
-        }
+        let enter = |axis: usize| {
+            let plane = S::load(&node.planes[self.near_side[axis]][axis]);
+            plane.mul_sub(self.inverse[axis], self.near_offset[axis])
+        };
+        let leave = |axis: usize| {
+            let plane = S::load(&node.planes[1 - self.near_side[axis]][axis]);
+            plane.mul_sub(self.inverse[axis], self.far_offset[axis])
+        };
+        // In pairs: the next step of the walk waits for the result.
+        let enter = enter(0).max(enter(1)).max(enter(2).max(near));
+        let leave = leave(0).min(leave(1)).min(leave(2).min(far));
         (enter.le(leave.mul(S::splat(FAR_PAD))), enter)
     }
 }
@@ -73,7 +74,8 @@ pub(super) fn walk<S, const W: usize, C: Counter>(
 {
     let boxes = BoxTest::<S>::new(ray);
     let near = S::splat(window.near);
-    let mut stack = Stack::new();
+    let mut space = StackSpace::new();
+    let mut stack = Stack::new(&mut space);
     let mut current = ChildRef::node(0);
     loop {
         if current.is_leaf() {
@@ -91,8 +93,8 @@ pub(super) fn walk<S, const W: usize, C: Counter>(
         }
         loop {
             match stack.pop() {
-                Some((distance, child)) if distance <= window.far => {
-                    current = child;
+                Some(entry) if entry.distance() <= window.far => {
+                    current = entry.child();
                     break;
                 }
                 Some(_) => {}
@@ -116,21 +118,47 @@ where
     if mask == 0 {
         return None;
     }
-    let first = mask.trailing_zeros() as usize % W;
-    let mut rest = mask & (mask - 1);
-    if rest == 0 {
+    let mut rest = mask;
+    let mut next_lane = || {
+        let lane = rest.trailing_zeros() as usize % W;
+        rest &= rest - 1;
+        (lane, rest == 0)
+    };
+    let (first, last) = next_lane();
+    if last {
         return Some(node.children[first]);
     }
     let mut distances = [0.0; W];
     enter.store(&mut distances);
-    let base = stack.len();
-    stack.push(distances[first], node.children[first]);
-    while rest != 0 {
-        let lane = rest.trailing_zeros() as usize % W;
-        rest &= rest - 1;
-        stack.insert(base, distances[lane], node.children[lane]);
+    let entry = |lane: usize| Entry::new(distances[lane], node.children[lane]);
+    let (second, last) = next_lane();
+    // Two and three are most frequent and are sorted without branches.
+    let (a, b) = in_order(entry(first), entry(second));
+    if last {
+        stack.push(b);
+        return Some(a.child());
     }
-    stack.pop().map(|(_, child)| child)
+    let (third, mut last) = next_lane();
+    let (b, c) = in_order(b, entry(third));
+    let (a, b) = in_order(a, b);
+    let base = stack.len();
+    stack.push(c);
+    stack.push(b);
+    let mut nearest = a;
+    while !last {
+        let (lane, ended) = next_lane();
+        let (near, far) = in_order(nearest, entry(lane));
+        nearest = near;
+        stack.insert(base, far);
+        last = ended;
+    }
+    Some(nearest.child())
+}
+
+/// The nearer, then the farther.
+#[inline(always)]
+fn in_order(a: Entry, b: Entry) -> (Entry, Entry) {
+    (a.min(b), a.max(b))
 }
 
 /// A ray's constants for the triangle filter, in vectors.

@@ -11,7 +11,7 @@ mod stack;
 mod x86;
 
 pub(super) use portable::Portable;
-pub(super) use stack::Stack;
+pub(super) use stack::{Entry, Stack, StackSpace};
 
 /// A vector of `W` floats.
 ///
