@@ -358,4 +358,7 @@ where
         *window = self.caster.window(self.search);
         ANY && self.search.hit.is_some()
     }
+
+    #[inline(always)]
+    fn announce(&self, _: ChildRef) {}
 }

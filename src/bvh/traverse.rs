@@ -7,7 +7,7 @@ use super::caster::{Caster, FAR_PAD, Window};
 use super::count::Counter;
 use super::hit::{Hit, Search, key};
 use super::layout::{Block, ChildRef, Node};
-use super::simd::{Entry, Lanes, Stack, StackSpace};
+use super::simd::{Entry, Lanes, Stack, StackSpace, prefetch};
 use crate::math::UNIT_ROUNDOFF;
 
 /// A ray's constants for the box test, in vectors.
@@ -59,6 +59,9 @@ pub(super) trait Visitor<C> {
     /// the search is over. Must be `#[inline(always)]`: a function of its own, such as a
     /// closure may become, would lack the instruction set of the walk.
     fn visit(&mut self, leaf: ChildRef, window: &mut Window, counter: &mut C) -> bool;
+
+    /// Is told that `leaf` will be visited soon. `#[inline(always)]`, too.
+    fn announce(&self, leaf: ChildRef);
 }
 
 /// Walks from the first of `nodes` to the leaves that may hold a better hit, nearest first.
@@ -86,7 +89,11 @@ pub(super) fn walk<S, const W: usize, C: Counter>(
             counter.node();
             let node = &nodes[current.index()];
             let (mask, enter) = boxes.test(node, near, S::splat(window.far));
-            if let Some(child) = nearest_child(node, mask, enter, &mut stack) {
+            let announce = |entry: Entry| match entry.child() {
+                leaf if leaf.is_leaf() => visitor.announce(leaf),
+                child => prefetch(nodes, child.index()),
+            };
+            if let Some(child) = nearest_child(node, mask, enter, &mut stack, announce) {
                 current = child;
                 continue;
             }
@@ -111,6 +118,7 @@ fn nearest_child<S, const W: usize>(
     mask: u32,
     enter: S,
     stack: &mut Stack,
+    announce: impl Fn(Entry),
 ) -> Option<ChildRef>
 where
     S: Lanes<W>,
@@ -134,6 +142,7 @@ where
     let (second, last) = next_lane();
     // Two and three are most frequent and are sorted without branches.
     let (a, b) = in_order(entry(first), entry(second));
+    announce(b);
     if last {
         stack.push(b);
         return Some(a.child());

@@ -5,7 +5,7 @@ use super::caster::{Caster, Window};
 use super::count::{Counter, Silent, TraversalCounts};
 use super::hit::{Hit, Search};
 use super::layout::{Block, ChildRef, Node, Tree};
-use super::simd::{Job, Lanes, Level};
+use super::simd::{Job, Lanes, Level, prefetch};
 use super::stats::TreeStats;
 use super::traverse::{Filter, Visitor, search_block, walk};
 use crate::math::{Aabb, Ray, Vec3};
@@ -271,5 +271,10 @@ where
             self.accept,
             counter,
         )
+    }
+
+    #[inline(always)]
+    fn announce(&self, leaf: ChildRef) {
+        prefetch(&self.tree.blocks, leaf.index());
     }
 }
