@@ -104,9 +104,8 @@ impl Caster {
         let mut pad =
             per_axis(|k| 6.0 * UNIT_ROUNDOFF * product[k].abs() + slack * inverse[k].abs() + TINY);
         for k in 0..3 {
-            // Rare, which saves the others the division.
             if scaled[k].abs() < least {
-                pad[k] += (way / f64::from(scaled[main].abs()) * (1.0 + RANGE_PAD)) as f32;
+                pad[k] += distance(way, scaled[main]);
             }
         }
         let shear = exact.shear();
@@ -174,13 +173,20 @@ fn unit_of_direction(length: f32, coordinate: f32) -> f64 {
 /// `None` where the slab is behind the origin.
 #[inline(always)]
 fn way_out(origin: f32, direction: f32, bounds: &Aabb, axis: usize, slack: f32) -> Option<f64> {
-    let plane = if direction > 0.0 {
-        bounds.max[axis]
-    } else {
-        bounds.min[axis]
-    };
     let origin = f64::from(origin);
-    let rounding = f64::from(f32::EPSILON) * origin.abs() + f64::from(slack);
-    let way = (f64::from(plane) - origin) * f64::from(direction.signum()) + rounding;
+    let ahead = if direction > 0.0 {
+        f64::from(bounds.max[axis]) - origin
+    } else {
+        origin - f64::from(bounds.min[axis])
+    };
+    let way = ahead + f64::from(f32::EPSILON) * origin.abs() + f64::from(slack);
     (way >= 0.0).then_some(way)
+}
+
+/// `way` in units of `direction`, rounded up. Rare, and apart so that other rays are spared the
+/// division.
+#[cold]
+#[inline(never)]
+fn distance(way: f64, direction: f32) -> f32 {
+    (way / f64::from(direction.abs()) * (1.0 + RANGE_PAD)) as f32
 }

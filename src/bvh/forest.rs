@@ -354,10 +354,11 @@ where
         let (ray, slack, accept) = (self.ray, self.slack, self.accept);
         let accept = |hit: &Hit| instance.confirms(ray, hit.t, slack) && accept(hit);
         let tree = &self.forest.trees[instance.tree as usize];
-        if let Some(caster) = Caster::new(&instance.ray(ray), &tree.bounds(), 0.0) {
-            tree.cast::<ANY, C>(&caster, self.search, index, &accept, counter);
-        }
+        tree.cast::<ANY, C>(&instance.ray(ray), self.search, index, &accept, counter);
         *window = self.caster.window(self.search);
         ANY && self.search.hit.is_some()
     }
+
+    #[inline(always)]
+    fn announce(&self, _: ChildRef) {}
 }

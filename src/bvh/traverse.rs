@@ -7,7 +7,7 @@ use super::caster::{Caster, FAR_PAD, Window};
 use super::count::Counter;
 use super::hit::{Hit, Search, key};
 use super::layout::{Block, ChildRef, Node};
-use super::simd::{Lanes, Stack};
+use super::simd::{Entry, Lanes, Stack, StackSpace, prefetch};
 use crate::math::UNIT_ROUNDOFF;
 
 /// A ray's constants for the box test, in vectors.
@@ -38,16 +38,17 @@ impl<S> BoxTest<S> {
     where
         S: Lanes<W>,
     {
-        let (mut enter, mut leave) = (near, far);
-        for axis in 0..3 {
-            let side = self.near_side[axis];
-            let near = S::load(&node.planes[side][axis]);
-            let far = S::load(&node.planes[1 - side][axis]);
-            let near = near.mul_sub(self.inverse[axis], self.near_offset[axis]);
-            let far = far.mul_sub(self.inverse[axis], self.far_offset[axis]);
-            enter = near.max(enter);
-            leave = far.min(leave);
-        }
+        let enter = |axis: usize| {
+            let plane = S::load(&node.planes[self.near_side[axis]][axis]);
+            plane.mul_sub(self.inverse[axis], self.near_offset[axis])
+        };
+        let leave = |axis: usize| {
+            let plane = S::load(&node.planes[1 - self.near_side[axis]][axis]);
+            plane.mul_sub(self.inverse[axis], self.far_offset[axis])
+        };
+        // In pairs: the next step of the walk waits for the result.
+        let enter = enter(0).max(enter(1)).max(enter(2).max(near));
+        let leave = leave(0).min(leave(1)).min(leave(2).min(far));
         (enter.le(leave.mul(S::splat(FAR_PAD))), enter)
     }
 }
@@ -58,6 +59,9 @@ pub(super) trait Visitor<C> {
     /// the search is over. Must be `#[inline(always)]`: a function of its own, such as a
     /// closure may become, would lack the instruction set of the walk.
     fn visit(&mut self, leaf: ChildRef, window: &mut Window, counter: &mut C) -> bool;
+
+    /// Is told that `leaf` will be visited soon. `#[inline(always)]`, too.
+    fn announce(&self, leaf: ChildRef);
 }
 
 /// Walks from the first of `nodes` to the leaves that may hold a better hit, nearest first.
@@ -73,7 +77,8 @@ pub(super) fn walk<S, const W: usize, C: Counter>(
 {
     let boxes = BoxTest::<S>::new(ray);
     let near = S::splat(window.near);
-    let mut stack = Stack::new();
+    let mut space = StackSpace::new();
+    let mut stack = Stack::new(&mut space);
     let mut current = ChildRef::node(0);
     loop {
         if current.is_leaf() {
@@ -84,15 +89,19 @@ pub(super) fn walk<S, const W: usize, C: Counter>(
             counter.node();
             let node = &nodes[current.index()];
             let (mask, enter) = boxes.test(node, near, S::splat(window.far));
-            if let Some(child) = nearest_child(node, mask, enter, &mut stack) {
+            let announce = |entry: Entry| match entry.child() {
+                leaf if leaf.is_leaf() => visitor.announce(leaf),
+                child => prefetch(nodes, child.index()),
+            };
+            if let Some(child) = nearest_child(node, mask, enter, &mut stack, announce) {
                 current = child;
                 continue;
             }
         }
         loop {
             match stack.pop() {
-                Some((distance, child)) if distance <= window.far => {
-                    current = child;
+                Some(entry) if entry.distance() <= window.far => {
+                    current = entry.child();
                     break;
                 }
                 Some(_) => {}
@@ -109,6 +118,7 @@ fn nearest_child<S, const W: usize>(
     mask: u32,
     enter: S,
     stack: &mut Stack,
+    announce: impl Fn(Entry),
 ) -> Option<ChildRef>
 where
     S: Lanes<W>,
@@ -116,21 +126,48 @@ where
     if mask == 0 {
         return None;
     }
-    let first = mask.trailing_zeros() as usize % W;
-    let mut rest = mask & (mask - 1);
-    if rest == 0 {
+    let mut rest = mask;
+    let mut next_lane = || {
+        let lane = rest.trailing_zeros() as usize % W;
+        rest &= rest - 1;
+        (lane, rest == 0)
+    };
+    let (first, last) = next_lane();
+    if last {
         return Some(node.children[first]);
     }
     let mut distances = [0.0; W];
     enter.store(&mut distances);
-    let base = stack.len();
-    stack.push(distances[first], node.children[first]);
-    while rest != 0 {
-        let lane = rest.trailing_zeros() as usize % W;
-        rest &= rest - 1;
-        stack.insert(base, distances[lane], node.children[lane]);
+    let entry = |lane: usize| Entry::new(distances[lane], node.children[lane]);
+    let (second, last) = next_lane();
+    // Two and three are most frequent and are sorted without branches.
+    let (a, b) = in_order(entry(first), entry(second));
+    announce(b);
+    if last {
+        stack.push(b);
+        return Some(a.child());
     }
-    stack.pop().map(|(_, child)| child)
+    let (third, mut last) = next_lane();
+    let (b, c) = in_order(b, entry(third));
+    let (a, b) = in_order(a, b);
+    let base = stack.len();
+    stack.push(c);
+    stack.push(b);
+    let mut nearest = a;
+    while !last {
+        let (lane, ended) = next_lane();
+        let (near, far) = in_order(nearest, entry(lane));
+        nearest = near;
+        stack.insert(base, far);
+        last = ended;
+    }
+    Some(nearest.child())
+}
+
+/// The nearer, then the farther.
+#[inline(always)]
+fn in_order(a: Entry, b: Entry) -> (Entry, Entry) {
+    (a.min(b), a.max(b))
 }
 
 /// A ray's constants for the triangle filter, in vectors.

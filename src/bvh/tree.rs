@@ -5,7 +5,7 @@ use super::caster::{Caster, Window};
 use super::count::{Counter, Silent, TraversalCounts};
 use super::hit::{Hit, Search};
 use super::layout::{Block, ChildRef, Node, Tree};
-use super::simd::{Job, Lanes, Level};
+use super::simd::{Job, Lanes, Level, prefetch};
 use super::stats::TreeStats;
 use super::traverse::{Filter, Visitor, search_block, walk};
 use crate::math::{Aabb, Ray, Vec3};
@@ -152,16 +152,15 @@ impl Bvh {
         accept: &impl Fn(&Hit) -> bool,
         counter: &mut C,
     ) -> Option<Hit> {
-        let caster = Caster::new(ray, &self.bounds(), 0.0)?;
         let mut search = Search::new(ray.t_min, ray.t_max);
-        self.cast::<ANY, _>(&caster, &mut search, 0, accept, counter);
+        self.cast::<ANY, _>(ray, &mut search, 0, accept, counter);
         search.hit
     }
 
     /// Looks for a hit better than that of `search`, as instance `instance`.
     pub(super) fn cast<const ANY: bool, C: Counter>(
         &self,
-        ray: &Caster,
+        ray: &Ray,
         search: &mut Search,
         instance: u32,
         accept: &impl Fn(&Hit) -> bool,
@@ -191,7 +190,7 @@ impl Bvh {
 /// A search in one tree, to be compiled for each kind of vectors.
 struct Cast<'a, const ANY: bool, const W: usize, A, C> {
     tree: &'a Tree<W>,
-    ray: &'a Caster,
+    ray: &'a Ray,
     search: &'a mut Search,
     instance: u32,
     accept: &'a A,
@@ -215,6 +214,10 @@ where
             accept,
             counter,
         } = self;
+        // In here, so that its arithmetic, too, is compiled for the instruction set.
+        let Some(ray) = &Caster::new(ray, &tree.bounds, 0.0) else {
+            return;
+        };
         let mut window = ray.window(search);
         let mut blocks = Blocks::<ANY, W, S, A> {
             tree,
@@ -268,5 +271,10 @@ where
             self.accept,
             counter,
         )
+    }
+
+    #[inline(always)]
+    fn announce(&self, leaf: ChildRef) {
+        prefetch(&self.tree.blocks, leaf.index());
     }
 }

@@ -71,9 +71,9 @@ impl ExactRay {
         if !(area.abs() > error && weights.iter().all(|&w| turn * w >= -error)) {
             return None;
         }
-        let u = (turn * weights[0]).max(0.0);
-        let v = (turn * weights[1]).max(0.0);
-        let w = (turn * weights[2]).max(0.0);
+        let u = larger(turn * weights[0], 0.0);
+        let v = larger(turn * weights[1], 0.0);
+        let w = larger(turn * weights[2], 0.0);
         let area = u + v + w;
         let mut depth = u * a[2] + v * b[2] + w * c[2];
         if depth.abs() <= 8.0 * f64::EPSILON * reach * area {
@@ -117,6 +117,12 @@ impl ExactRay {
     }
 }
 
+/// `f64::max` where there is no NaN, in a single instruction.
+#[inline(always)]
+fn larger(x: f64, y: f64) -> f64 {
+    if x > y { x } else { y }
+}
+
 #[inline(always)]
 fn widen(v: [f32; 3]) -> [f64; 3] {
     [f64::from(v[0]), f64::from(v[1]), f64::from(v[2])]
@@ -131,8 +137,8 @@ fn widen(v: [f32; 3]) -> [f64; 3] {
 #[inline(always)]
 fn reach_and_edge_error(corners: &[[f64; 3]; 3]) -> [f64; 2] {
     let [a, b, c] = corners;
-    let largest = |k: usize| a[k].abs().max(b[k].abs()).max(c[k].abs());
-    let (r, z) = (largest(0).max(largest(1)), largest(2));
+    let largest = |k: usize| larger(larger(a[k].abs(), b[k].abs()), c[k].abs());
+    let (r, z) = (larger(largest(0), largest(1)), largest(2));
     [z, 8.0 * f64::EPSILON * r * (r + z)]
 }
 

@@ -1,4 +1,4 @@
-//! The one home of unsafe code: vectors of 8 or 16 floats, and memory that is not cleared.
+//! The one home of unsafe code: vectors of 8 or 16 floats, and what memory is like.
 //!
 //! Traversal is written once over [`Lanes`]. [`Level`] runs it compiled for an instruction set,
 //! and there is a `Level` only of what the running processor has.
@@ -6,12 +6,14 @@
 #![allow(unsafe_code)]
 
 mod portable;
+mod prefetch;
 mod stack;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
 pub(super) use portable::Portable;
-pub(super) use stack::Stack;
+pub(super) use prefetch::prefetch;
+pub(super) use stack::{Entry, Stack, StackSpace};
 
 /// A vector of `W` floats.
 ///

@@ -7,21 +7,61 @@ use crate::bvh::layout::{ChildRef, MAX_DEPTH};
 /// Enough for every level of a 16-wide tree to leave 15 children behind.
 const CAPACITY: usize = MAX_DEPTH * 15 + 1;
 
-/// Children still to be visited, with the distances at which the ray enters them.
+/// A child still to be visited and the distance at which the ray enters it.
+///
+/// Entries are ordered by distance: as integers, which for floats that are not negative is the
+/// same order. (A distance may be a hair below zero. Such ones come first, in any order.)
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(in crate::bvh) struct Entry(i64);
+
+impl Entry {
+    /// Of `child`, entered at `distance`.
+    #[inline(always)]
+    pub fn new(distance: f32, child: ChildRef) -> Self {
+        Self(i64::from(distance.to_bits() as i32) << 32 | i64::from(child.bits()))
+    }
+
+    /// Where the ray enters.
+    #[inline(always)]
+    pub fn distance(self) -> f32 {
+        f32::from_bits((self.0 >> 32) as u32)
+    }
+
+    /// The child.
+    #[inline(always)]
+    pub fn child(self) -> ChildRef {
+        ChildRef::from_bits(self.0 as u32)
+    }
+}
+
+/// Memory for a [`Stack`].
 ///
 /// Clearing its kilobytes would cost as much as several node visits, so they are left as
 /// they are and only what was pushed is read.
-pub(in crate::bvh) struct Stack {
-    entries: [MaybeUninit<u64>; CAPACITY],
+pub(in crate::bvh) struct StackSpace([MaybeUninit<Entry>; CAPACITY]);
+
+impl StackSpace {
+    /// Uninitialised.
+    #[inline(always)]
+    pub fn new() -> Self {
+        Self([const { MaybeUninit::uninit() }; CAPACITY])
+    }
+}
+
+/// Children still to be visited, nearest last.
+///
+/// The entries are elsewhere so that the compiler keeps the length in a register.
+pub(in crate::bvh) struct Stack<'a> {
+    entries: &'a mut [MaybeUninit<Entry>; CAPACITY],
     length: usize,
 }
 
-impl Stack {
+impl<'a> Stack<'a> {
     /// Empty.
     #[inline(always)]
-    pub fn new() -> Self {
+    pub fn new(space: &'a mut StackSpace) -> Self {
         Self {
-            entries: [const { MaybeUninit::uninit() }; CAPACITY],
+            entries: &mut space.0,
             length: 0,
         }
     }
@@ -34,51 +74,38 @@ impl Stack {
 
     /// Adds an entry.
     #[inline(always)]
-    pub fn push(&mut self, distance: f32, child: ChildRef) {
-        self.entries[self.length].write(pack(distance, child));
+    pub fn push(&mut self, entry: Entry) {
+        self.entries[self.length].write(entry);
         self.length += 1;
     }
 
     /// Adds an entry below the nearer ones among those from `base` on, which are in order.
     #[inline(always)]
-    pub fn insert(&mut self, base: usize, distance: f32, child: ChildRef) {
+    pub fn insert(&mut self, base: usize, entry: Entry) {
         let mut at = self.length;
-        while at > base && unpack(self.get(at - 1)).0 < distance {
+        while at > base && self.get(at - 1) < entry {
             self.entries[at].write(self.get(at - 1));
             at -= 1;
         }
-        self.entries[at].write(pack(distance, child));
+        self.entries[at].write(entry);
         self.length += 1;
     }
 
     /// Removes the last entry; `None` where there is none.
     #[inline(always)]
-    pub fn pop(&mut self) -> Option<(f32, ChildRef)> {
+    pub fn pop(&mut self) -> Option<Entry> {
         if self.length == 0 {
             return None;
         }
         self.length -= 1;
-        Some(unpack(self.get(self.length)))
+        Some(self.get(self.length))
     }
 
     #[inline(always)]
-    fn get(&self, index: usize) -> u64 {
+    fn get(&self, index: usize) -> Entry {
         debug_assert!(index <= self.length);
         // SAFETY: the callers read only below `length` (`pop` has just lowered it), and
         // entries below `length` were written by `push` or `insert`.
         unsafe { self.entries[index].assume_init() }
     }
-}
-
-#[inline(always)]
-fn pack(distance: f32, child: ChildRef) -> u64 {
-    u64::from(distance.to_bits()) << 32 | u64::from(child.bits())
-}
-
-#[inline(always)]
-fn unpack(entry: u64) -> (f32, ChildRef) {
-    (
-        f32::from_bits((entry >> 32) as u32),
-        ChildRef::from_bits(entry as u32),
-    )
 }
