@@ -148,11 +148,11 @@ impl Bsdf {
     }
 
     /// Share of uniform ambient light that is scattered to `wo`; what rays of their own bring
-    /// from mirrors and glass is left out.
+    /// from mirrors and glass is left out. Phong's lobe, whose author gave it lights alone to show,
+    /// takes none.
     pub fn ambient(&self, cos_o: f32) -> Rgb {
         match self.glossy {
-            Glossy::None => self.diffuse,
-            Glossy::Phong { reflectance, .. } => self.diffuse + reflectance,
+            Glossy::None | Glossy::Phong { .. } => self.diffuse,
             Glossy::Ggx {
                 dielectric,
                 unmirrored: (f0, f90),
