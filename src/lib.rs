@@ -31,7 +31,7 @@
 //! | [`import`] | files | a [`scene::Scene`] with settings and warnings |
 //! | [`bvh`] | triangles | hits |
 //! | [`prepare`] | a scene | what rays meet |
-//! | [`film`] | samples | sums, means, variances |
+//! | [`film`] | samples | means, variances |
 //! | [`integrate`] | a ray | the radiance that comes back along it |
 //! | [`render`] | a prepared scene, a camera, settings | a film |
 //! | [`output`] | pixels | files |
@@ -60,7 +60,7 @@
 //!   once, with a tree of its own.
 //! * **Nothing after `prepare` returns a `Result`.** A sample that is not finite is dropped by the
 //!   [`film`], counted, and its pixel and index are kept: one bad number ends no render of an hour.
-//! * **Sums are in `f64`,** in the order of the samples: a million samples still add up.
+//! * **Means are kept in `f64`,** in the order of the samples: a million samples still add up.
 //! * **Few newtypes:** unit vectors, linear colour, indices. They stand where mixing two things up costs
 //!   pixels; points and directions are both plain vectors, since transforms happen in one place.
 

@@ -169,24 +169,15 @@ impl PreparedScene<'_> {
         p.iter().any(|v| q.contains(v)) && faces(p) == faces(q)
     }
 
-    /// Whether anything that no light passes is in the way of `ray`.
-    pub fn is_blocked(&self, ray: &Ray) -> bool {
-        if self.has_transparency {
-            let tracer = &self.geometry.tracer;
-            tracer.any_hit_if(ray, |hit| self.is_opaque(hit))
-        } else {
-            self.geometry.tracer.any_hit(ray)
-        }
-    }
-
     /// The surfaces that `ray` crosses and that let some light pass, from front to back; `None`
     /// where something that no light passes is in the way.
     pub fn crossings(&self, ray: &Ray) -> Option<Vec<Hit>> {
+        let tracer = &self.geometry.tracer;
         if !self.has_transparency {
-            return (!self.is_blocked(ray)).then(Vec::new);
+            return (!tracer.any_hit(ray)).then(Vec::new);
         }
         let crossed = RefCell::new(Vec::new());
-        let is_blocked = self.geometry.tracer.any_hit_if(ray, |hit| {
+        let is_blocked = tracer.any_hit_if(ray, |hit| {
             let opacity = self.opacity(hit);
             if opacity > 0.0 && opacity < 1.0 {
                 crossed.borrow_mut().push(*hit);
