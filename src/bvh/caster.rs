@@ -11,10 +11,10 @@
 //! b·i − c with c = o·i + 6u|o·i| (near planes; − 6u|o·i| for far planes), rounded after
 //! each operation or fused: its error is at most 4u|o·i| + 3u|(b − o)/d|, roundings of i, c
 //! and, unfused, of b·i included. So the near distance is at most t(1 + 6u), whatever the
-//! fusing, and likewise the far distance is at least t(1 − 6u). The test `near <= far *`
-//! [`FAR_PAD`] therefore passes (compare Ize 2013, "Robust BVH Ray Traversal"), and it still
-//! does when near and far are clipped to the ray's range widened by [`RANGE_PAD`]. Underflow
-//! is covered by [`TINY`].
+//! fusing. Far planes have a reciprocal of their own, larger by [`FAR_PAD`]: likewise their
+//! distance is at least t(1 + 16u)(1 − 7u), which is more. The test near <= far therefore passes
+//! (compare Ize 2013, "Robust BVH Ray Traversal"), and it still does when near and far are
+//! clipped to the ray's range widened by [`RANGE_PAD`]. Underflow is covered by [`TINY`].
 //!
 //! Components of d below 2^-40 of the largest, zero included, would make i overflow or lose
 //! culling. They are raised to 2^-40 of the largest, keeping their sign, and c is widened by
@@ -27,11 +27,12 @@ use super::hit::Search;
 use super::triangle::ExactRay;
 use crate::math::{Aabb, Ray, UNIT_ROUNDOFF};
 
-/// `near <= far * FAR_PAD` is the box test; 1 + 16u.
-pub(super) const FAR_PAD: f32 = 1.0 + 16.0 * UNIT_ROUNDOFF;
+/// How much larger reciprocal directions are for far planes; 1 + 16u.
+const FAR_PAD: f32 = 1.0 + 16.0 * UNIT_ROUNDOFF;
 
-/// Widens the range of `t` that boxes and the triangle filter let through.
-const RANGE_PAD: f64 = 8.0 * UNIT_ROUNDOFF as f64;
+/// Widens the range of `t` that boxes and the triangle filter let through: 16u, of which
+/// computing it takes 3u.
+const RANGE_PAD: f32 = 16.0 * UNIT_ROUNDOFF;
 
 /// More than underflow can take away from any distance.
 const TINY: f32 = 64.0 * f32::MIN_POSITIVE;
@@ -39,25 +40,31 @@ const TINY: f32 = 64.0 * f32::MIN_POSITIVE;
 /// Components of the direction are raised to this share of the largest.
 const LEAST_SLOPE: f32 = 1.0 / (1u64 << 40) as f32;
 
+/// Lengths of directions and magnitudes of coordinates whose products cannot overflow: slopes
+/// are 2^-40 at least, so that reciprocals are at most 2^70 and products at most 2^121.
+const ORDINARY_LENGTH: std::ops::Range<f32> = 1.0 / (1u64 << 30) as f32..(1u64 << 30) as f32;
+const ORDINARY_COORDINATE: f32 = (1u64 << 50) as f32;
+
 /// A ray on its way through a tree.
 pub(super) struct Caster {
     /// Second, third and main axis: the main one is that of the largest direction component.
     pub axes: [usize; 3],
     /// Whether the ray runs towards lower coordinates, by axis: index of the near planes.
     pub near_side: [usize; 3],
-    /// Reciprocal direction, by axis.
-    pub inverse: [f32; 3],
-    /// What is subtracted from a near plane times `inverse`.
+    /// Reciprocal direction, by axis, for near planes.
+    pub near_inverse: [f32; 3],
+    /// Reciprocal direction, by axis, for far planes.
+    pub far_inverse: [f32; 3],
+    /// What is subtracted from a near plane times `near_inverse`.
     pub near_offset: [f32; 3],
-    /// What is subtracted from a far plane times `inverse`.
+    /// What is subtracted from a far plane times `far_inverse`.
     pub far_offset: [f32; 3],
     /// Origin, in the order `axes`.
     pub origin: [f32; 3],
     /// Slopes of the two lesser axes along the main one.
     pub shear: [f32; 2],
-    /// For the test that decides.
-    pub exact: ExactRay,
-    main_direction: f64,
+    /// Direction, in the order `axes`.
+    direction: [f32; 3],
     /// Box distances are `t * to_distance`; see [`unit_of_direction`].
     to_distance: f64,
 }
@@ -75,72 +82,152 @@ pub(super) struct Window {
 }
 
 impl Caster {
-    /// `None` where `ray` is not finite, has no direction, or leaves `bounds` behind.
+    /// `None` where `ray` is not finite or has no direction; it may be `None`, too, where it
+    /// leaves `bounds` behind.
     ///
-    /// `slack` is a distance in space by which boxes count as larger; finite.
+    /// `reach` is the largest magnitude of a coordinate in `bounds`. `slack` is a distance in
+    /// space by which boxes count as larger; finite.
     #[inline(always)]
-    pub fn new(ray: &Ray, bounds: &Aabb, slack: f32) -> Option<Self> {
+    pub fn new(ray: &Ray, bounds: &Aabb, reach: f32, slack: f32) -> Option<Self> {
         let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
-        let size = ray.direction.abs().to_array();
+        let size = [direction[0].abs(), direction[1].abs(), direction[2].abs()];
         let main = longest(size);
-        let finite = ray.origin.is_finite() && ray.direction.is_finite();
-        if !finite || size[main] == 0.0 || bounds.is_empty() {
-            return None;
-        }
-        let axes = [(main + 1) % 3, (main + 2) % 3, main];
-        let turned = |v: [f32; 3]| [v[axes[0]], v[axes[1]], v[main]];
-        let exact = ExactRay::new(turned(origin), turned(direction));
-        let coordinate = ray.origin.abs().max(bounds.min.abs()).max(bounds.max.abs());
-        let to_distance = unit_of_direction(size[main], coordinate.max_element());
-        let scaled = match to_distance {
-            1.0 => direction,
-            unit => per_axis(|k| (f64::from(direction[k]) / unit) as f32),
-        };
-        let way = way_out(origin[main], scaled[main], bounds, main, slack)?;
-
-        let least = LEAST_SLOPE * scaled[main].abs();
-        let inverse = per_axis(|k| 1.0 / scaled[k].abs().max(least).copysign(scaled[k]));
-        let product = per_axis(|k| origin[k] * inverse[k]);
-        let mut pad =
-            per_axis(|k| 6.0 * UNIT_ROUNDOFF * product[k].abs() + slack * inverse[k].abs() + TINY);
-        for k in 0..3 {
-            if scaled[k].abs() < least {
-                pad[k] += distance(way, scaled[main]);
+        let least = LEAST_SLOPE * size[main];
+        let ordinary = ORDINARY_LENGTH.contains(&size[main])
+            && (size[0] >= least && size[1] >= least && size[2] >= least)
+            && within(origin, ORDINARY_COORDINATE)
+            && reach <= ORDINARY_COORDINATE;
+        let slopes = if ordinary {
+            Slopes {
+                direction,
+                pad: [TINY; 3],
+                unit: 1.0,
             }
-        }
-        let shear = exact.shear();
+        } else {
+            unusual_slopes(ray, main, bounds, reach, slack)?
+        };
+
+        let near_inverse = per_axis(|k| 1.0 / slopes.direction[k]);
+        let far_inverse = per_axis(|k| near_inverse[k] * FAR_PAD);
+        let pad = |product: f32, k: usize| {
+            6.0 * UNIT_ROUNDOFF * product.abs() + (slack * far_inverse[k].abs() + slopes.pad[k])
+        };
+        let near = per_axis(|k| origin[k] * near_inverse[k]);
+        let far = per_axis(|k| origin[k] * far_inverse[k]);
+        let axes = AXES[main];
+        let turned_direction = turned(direction, axes);
         Some(Self {
             axes,
-            near_side: per_axis(|k| usize::from(direction[k].is_sign_negative())),
-            inverse,
-            near_offset: per_axis(|k| product[k] + pad[k]),
-            far_offset: per_axis(|k| product[k] - pad[k]),
-            origin: turned(origin),
-            shear: [shear[0] as f32, shear[1] as f32],
-            exact,
-            main_direction: f64::from(direction[main]),
-            to_distance,
+            near_side: per_axis(|k| (direction[k].to_bits() >> 31) as usize),
+            near_inverse,
+            far_inverse,
+            near_offset: per_axis(|k| near[k] + pad(near[k], k)),
+            far_offset: per_axis(|k| far[k] - pad(far[k], k)),
+            origin: turned(origin, axes),
+            shear: [
+                turned_direction[0] / turned_direction[2],
+                turned_direction[1] / turned_direction[2],
+            ],
+            direction: turned_direction,
+            to_distance: slopes.unit,
         })
     }
 
     /// What of the tree may still hold a better hit.
     #[inline(always)]
     pub fn window(&self, search: &Search) -> Window {
-        let least = f64::from(search.t_min) * (1.0 - RANGE_PAD);
-        let most = f64::from(search.t_best) * (1.0 + RANGE_PAD);
-        let (a, b) = (least * self.main_direction, most * self.main_direction);
+        let least = search.t_min * (1.0 - RANGE_PAD);
+        let most = search.t_best * (1.0 + RANGE_PAD);
+        let (a, b) = (least * self.direction[2], most * self.direction[2]);
+        let (near, far) = if self.to_distance == 1.0 {
+            (least, most)
+        } else {
+            self.distances(least, most)
+        };
+        let towards_higher = self.direction[2] > 0.0;
         Window {
-            near: (least * self.to_distance) as f32 - TINY,
-            far: (most * self.to_distance) as f32 + TINY,
-            depth: [a.min(b) as f32 - TINY, a.max(b) as f32 + TINY],
+            near: near - TINY,
+            far: far + TINY,
+            depth: if towards_higher {
+                [a - TINY, b + TINY]
+            } else {
+                [b - TINY, a + TINY]
+            },
         }
     }
+
+    /// For the test that decides. Made anew for each: most rays need it once or not at all.
+    #[inline(always)]
+    pub fn exact(&self) -> ExactRay {
+        ExactRay::new(self.origin, self.direction)
+    }
+
+    #[cold]
+    fn distances(&self, least: f32, most: f32) -> (f32, f32) {
+        let distance = |t: f32| (f64::from(t) * self.to_distance) as f32;
+        (distance(least), distance(most))
+    }
+}
+
+/// A direction whose reciprocals and their products with coordinates are finite.
+struct Slopes {
+    direction: [f32; 3],
+    /// By how much boxes count as larger, in units of the direction.
+    pad: [f32; 3],
+    /// What the ray's direction was divided by.
+    unit: f64,
+}
+
+/// Of rays with extreme coordinates or directions, or along an axis.
+#[cold]
+#[inline(never)]
+fn unusual_slopes(
+    ray: &Ray,
+    main: usize,
+    bounds: &Aabb,
+    reach: f32,
+    slack: f32,
+) -> Option<Slopes> {
+    let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
+    let length = direction[main].abs();
+    let finite = ray.origin.is_finite() && ray.direction.is_finite();
+    if !finite || length == 0.0 || bounds.is_empty() {
+        return None;
+    }
+    let unit = unit_of_direction(length, reach.max(ray.origin.abs().max_element()));
+    let scaled = match unit {
+        1.0 => direction,
+        unit => per_axis(|k| (f64::from(direction[k]) / unit) as f32),
+    };
+    let way = way_out(origin[main], scaled[main], bounds, main, slack)?;
+    let stay = (way / f64::from(scaled[main].abs()) * f64::from(FAR_PAD)) as f32;
+    let least = LEAST_SLOPE * scaled[main].abs();
+    let is_low = per_axis(|k| scaled[k].abs() < least);
+    Some(Slopes {
+        direction: per_axis(|k| scaled[k].abs().max(least).copysign(scaled[k])),
+        pad: per_axis(|k| TINY + if is_low[k] { stay } else { 0.0 }),
+        unit,
+    })
 }
 
 /// `array::map` is not inlined everywhere, see `triangle`.
 #[inline(always)]
 fn per_axis<T>(f: impl Fn(usize) -> T) -> [T; 3] {
     [f(0), f(1), f(2)]
+}
+
+/// By main axis: the second, the third and the main axis.
+const AXES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
+
+#[inline(always)]
+fn turned(v: [f32; 3], axes: [usize; 3]) -> [f32; 3] {
+    [v[axes[0]], v[axes[1]], v[axes[2]]]
+}
+
+/// Whether no component is beyond `limit`, or NaN.
+#[inline(always)]
+fn within(v: [f32; 3], limit: f32) -> bool {
+    v[0].abs() <= limit && v[1].abs() <= limit && v[2].abs() <= limit
 }
 
 #[inline(always)]
@@ -152,13 +239,8 @@ fn longest(size: [f32; 3]) -> usize {
 /// What directions are divided by for box tests, a power of two: 1, but where a direction of
 /// length `length` or a coordinate as large as `coordinate` would make products overflow.
 ///
-/// With coordinates up to 2^50 directions of length 2^-30 to 2^30 have products below 2^121
-/// (reciprocals are at most 2^70). Larger coordinates get a direction of length 2^42, whose
-/// reciprocals are below 1.
-#[inline(always)]
+/// Large coordinates get a direction of length 2^42, whose reciprocals are below 1.
 fn unit_of_direction(length: f32, coordinate: f32) -> f64 {
-    const ORDINARY_LENGTH: std::ops::Range<f32> = 1.0 / (1u64 << 30) as f32..(1u64 << 30) as f32;
-    const ORDINARY_COORDINATE: f32 = (1u64 << 50) as f32;
     let exponent = if coordinate > ORDINARY_COORDINATE {
         42.0
     } else if ORDINARY_LENGTH.contains(&length) {
@@ -171,7 +253,6 @@ fn unit_of_direction(length: f32, coordinate: f32) -> f64 {
 
 /// How far it is, along the main axis, to where the ray leaves the slab of `bounds`, rounded up;
 /// `None` where the slab is behind the origin.
-#[inline(always)]
 fn way_out(origin: f32, direction: f32, bounds: &Aabb, axis: usize, slack: f32) -> Option<f64> {
     let origin = f64::from(origin);
     let ahead = if direction > 0.0 {
@@ -181,12 +262,4 @@ fn way_out(origin: f32, direction: f32, bounds: &Aabb, axis: usize, slack: f32) 
     };
     let way = ahead + f64::from(f32::EPSILON) * origin.abs() + f64::from(slack);
     (way >= 0.0).then_some(way)
-}
-
-/// `way` in units of `direction`, rounded up. Rare, and apart so that other rays are spared the
-/// division.
-#[cold]
-#[inline(never)]
-fn distance(way: f64, direction: f32) -> f32 {
-    (way / f64::from(direction.abs()) * (1.0 + RANGE_PAD)) as f32
 }

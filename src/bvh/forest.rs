@@ -186,7 +186,7 @@ impl Forest {
     ) -> Option<Hit> {
         let slack = self.slack(ray);
         // A little more than `slack`: the caster rounds what it makes of it.
-        let caster = Caster::new(ray, &self.bounds, 1.001 * slack)?;
+        let caster = Caster::new(ray, &self.bounds, self.reach, 1.001 * slack)?;
         let mut search = Search::new(ray.t_min, ray.t_max);
         self.level.run8(Visit::<ANY, _, _> {
             forest: self,

@@ -3,7 +3,7 @@
 //! Children are visited nearest first; those left behind wait on a stack with their distance
 //! and are dropped when a hit nearer than that has been found meanwhile.
 
-use super::caster::{Caster, FAR_PAD, Window};
+use super::caster::{Caster, Window};
 use super::count::Counter;
 use super::hit::{Hit, Search, key};
 use super::layout::{Block, ChildRef, Node};
@@ -12,7 +12,8 @@ use crate::math::UNIT_ROUNDOFF;
 
 /// A ray's constants for the box test, in vectors.
 struct BoxTest<S> {
-    inverse: [S; 3],
+    near_inverse: [S; 3],
+    far_inverse: [S; 3],
     near_offset: [S; 3],
     far_offset: [S; 3],
     near_side: [usize; 3],
@@ -25,7 +26,8 @@ impl<S> BoxTest<S> {
         S: Lanes<W>,
     {
         Self {
-            inverse: splat(ray.inverse),
+            near_inverse: splat(ray.near_inverse),
+            far_inverse: splat(ray.far_inverse),
             near_offset: splat(ray.near_offset),
             far_offset: splat(ray.far_offset),
             near_side: ray.near_side,
@@ -40,16 +42,16 @@ impl<S> BoxTest<S> {
     {
         let enter = |axis: usize| {
             let plane = S::load(&node.planes[self.near_side[axis]][axis]);
-            plane.mul_sub(self.inverse[axis], self.near_offset[axis])
+            plane.mul_sub(self.near_inverse[axis], self.near_offset[axis])
         };
         let leave = |axis: usize| {
             let plane = S::load(&node.planes[1 - self.near_side[axis]][axis]);
-            plane.mul_sub(self.inverse[axis], self.far_offset[axis])
+            plane.mul_sub(self.far_inverse[axis], self.far_offset[axis])
         };
         // In pairs: the next step of the walk waits for the result.
         let enter = enter(0).max(enter(1)).max(enter(2).max(near));
         let leave = leave(0).min(leave(1)).min(leave(2).min(far));
-        (enter.le(leave.mul(S::splat(FAR_PAD))), enter)
+        (enter.le(leave), enter)
     }
 }
 
@@ -196,12 +198,10 @@ impl<S> Filter<S> {
     /// The same sheared edge functions as there, in `f32`. With R the largest sheared and Z
     /// the largest main coordinate, each sheared coordinate is off by at most 2uR + 4uZ, an
     /// edge function hence by less than 12uR² + 16uRZ + 32u²Z²; what is compared with,
-    /// 20u(R + 4uZ)(R + Z), is more. A triangle is out only where one edge function is
-    /// certainly negative and another certainly positive, or where all its corners are
-    /// certainly nearer or farther than the window (t is a weighted mean of theirs). A NaN
-    /// makes nothing certain.
+    /// e = 20u(R + 4uZ)(R + Z), is more. A triangle is out where one edge function is certainly
+    /// negative and another certainly positive. A NaN makes nothing certain.
     #[inline(always)]
-    pub fn test<const W: usize>(&self, block: &Block<W>, window: &Window) -> u32
+    pub fn test<const W: usize>(&self, block: &Block<W>, count: u32, window: &Window) -> u32
     where
         S: Lanes<W>,
     {
@@ -218,14 +218,49 @@ impl<S> Filter<S> {
             .mul_add(S::splat(4.0 * UNIT_ROUNDOFF), r)
             .mul(S::splat(20.0 * UNIT_ROUNDOFF))
             .mul_add(r.add(z), S::splat(f32::MIN_POSITIVE));
-
         let negative = u.min(v).min(w).lt(S::splat(0.0).sub(error));
         let positive = error.lt(u.max(v).max(w));
-        let nearest = a[2].min(b[2]).min(c[2]);
-        let farthest = a[2].max(b[2]).max(c[2]);
-        let beyond = S::splat(window.depth[1]).lt(nearest);
-        let before = farthest.lt(S::splat(window.depth[0]));
-        !(negative & positive | beyond | before)
+        let lanes = !(negative & positive) & (u32::MAX >> (32 - count));
+        if lanes == 0 {
+            return 0;
+        }
+
+        let depth = u.mul_add(a[2], v.mul_add(b[2], w.mul(c[2])));
+        let area = u.add(v.add(w));
+        lanes & !Self::certainly_outside(depth, area, error, z, window)
+    }
+
+    /// Which crossings, at depth `depth / area`, are not in the window for certain.
+    ///
+    /// Where a triangle is crossed its edge functions have one sign, up to their error e. Then
+    /// the computed area A is off by at most 4e + 2u|A|, which leaves its sign certain beyond
+    /// 8e, and `depth`, a sum of edge functions times main coordinates of at most Z, by at most
+    /// Z(4e + 5u|A|). So the difference of depth·sgn A and h|A| is off by less than
+    /// (Z + |h|)(4e + 5u|A|); what is compared with is twice that.
+    #[inline(always)]
+    fn certainly_outside<const W: usize>(
+        depth: S,
+        area: S,
+        error: S,
+        z: S,
+        window: &Window,
+    ) -> u32
+    where
+        S: Lanes<W>,
+    {
+        let size = area.max_abs(area);
+        let depth = depth.with_sign_flipped_by(area);
+        let doubt = size
+            .mul(S::splat(10.0 * UNIT_ROUNDOFF))
+            .add(error.mul(S::splat(8.0)));
+        let [low, high] = window.depth;
+        let room = |limit: f32| {
+            z.add(S::splat(limit.abs()))
+                .mul_add(doubt, S::splat(f32::MIN_POSITIVE))
+        };
+        let before = room(low).lt(size.mul_sub(S::splat(low), depth));
+        let beyond = room(high).lt(size.neg_mul_add(S::splat(high), depth));
+        (before | beyond) & doubt.lt(size)
     }
 
     /// One corner of each triangle, moved so that the ray starts at the origin and sheared so
@@ -278,13 +313,13 @@ where
     S: Lanes<W>,
 {
     counter.leaf();
-    let mut lanes = filter.test(block, window) & (u32::MAX >> (32 - count));
+    let mut lanes = filter.test(block, count, window);
     while lanes != 0 {
         let lane = lanes.trailing_zeros() as usize % W;
         lanes &= lanes - 1;
         counter.triangle();
         let corners = block.corners_of(lane, ray.axes);
-        let Some(crossing) = ray.exact.cross(&corners) else {
+        let Some(crossing) = ray.exact().cross(&corners) else {
             continue;
         };
         let triangle = block.triangles[lane];

@@ -52,6 +52,8 @@ enum Body {
 pub struct Bvh {
     body: Body,
     level: Level,
+    /// Largest magnitude of a coordinate of the bounds.
+    reach: f32,
 }
 
 impl Bvh {
@@ -63,9 +65,9 @@ impl Bvh {
         [Width::Avx512, Width::Avx2]
             .into_iter()
             .find_map(|width| Self::build_with(positions, indices, builder, width))
-            .unwrap_or_else(|| Self {
-                body: Body::Eight(build(positions, indices, builder)),
-                level: Level::PORTABLE,
+            .unwrap_or_else(|| {
+                let body = Body::Eight(build(positions, indices, builder));
+                Self::new(body, Level::PORTABLE)
             })
     }
 
@@ -81,7 +83,18 @@ impl Bvh {
             Width::Portable | Width::Avx2 => Body::Eight(build(positions, indices, builder)),
             Width::Avx512 => Body::Sixteen(build(positions, indices, builder)),
         };
-        Some(Self { body, level })
+        Some(Self::new(body, level))
+    }
+
+    fn new(body: Body, level: Level) -> Self {
+        let mut bvh = Self {
+            body,
+            level,
+            reach: 0.0,
+        };
+        let bounds = bvh.bounds();
+        bvh.reach = bounds.min.abs().max(bounds.max.abs()).max_element();
+        bvh
     }
 
     /// The first hit along `ray` in `t_min < t < t_max`; among several at the same `t` the
@@ -169,6 +182,7 @@ impl Bvh {
         match &self.body {
             Body::Eight(tree) => self.level.run8(Cast::<ANY, 8, _, _> {
                 tree,
+                reach: self.reach,
                 ray,
                 search,
                 instance,
@@ -177,6 +191,7 @@ impl Bvh {
             }),
             Body::Sixteen(tree) => self.level.run16(Cast::<ANY, 16, _, _> {
                 tree,
+                reach: self.reach,
                 ray,
                 search,
                 instance,
@@ -190,6 +205,7 @@ impl Bvh {
 /// A search in one tree, to be compiled for each kind of vectors.
 struct Cast<'a, const ANY: bool, const W: usize, A, C> {
     tree: &'a Tree<W>,
+    reach: f32,
     ray: &'a Ray,
     search: &'a mut Search,
     instance: u32,
@@ -208,6 +224,7 @@ where
     fn run<S: Lanes<W>>(self) {
         let Self {
             tree,
+            reach,
             ray,
             search,
             instance,
@@ -215,7 +232,7 @@ where
             counter,
         } = self;
         // In here, so that its arithmetic, too, is compiled for the instruction set.
-        let Some(ray) = &Caster::new(ray, &tree.bounds, 0.0) else {
+        let Some(ray) = &Caster::new(ray, &tree.bounds, reach, 0.0) else {
             return;
         };
         let mut window = ray.window(search);

@@ -25,6 +25,10 @@ pub(super) struct Crossing {
     pub v: f32,
 }
 
+/// One number each for the corners a, b and c, or for the three axes; the fourth fills up a
+/// vector of the processor and means nothing.
+type Four = [f64; 4];
+
 /// The f64 constants of a ray, with coordinates in the order (second, third, main axis).
 pub(super) struct ExactRay {
     origin: [f64; 3],
@@ -45,82 +49,115 @@ impl ExactRay {
         }
     }
 
-    /// The slopes along the main axis, in `[-1, 1]`.
-    #[inline(always)]
-    pub fn shear(&self) -> [f64; 2] {
-        self.shear
-    }
-
     /// Where the line of the ray crosses the triangle, whatever the sign of `t`.
     ///
     /// `corners` are in the caster's order of axes. Edges and corners belong to the triangle.
     /// `None` also where the triangle has no area as seen along the ray, beyond rounding.
     #[inline(always)]
     pub fn cross(&self, corners: &[[f32; 3]; 3]) -> Option<Crossing> {
-        let a = self.shear_point(corners[0]);
-        let b = self.shear_point(corners[1]);
-        let c = self.shear_point(corners[2]);
-        let [reach, error] = reach_and_edge_error(&[a, b, c]);
-        let mut weights = edge_functions(a, b, c);
+        let z = self.from_origin(corners, 2);
+        let x = sub(self.from_origin(corners, 0), scale(z, self.shear[0]));
+        let y = sub(self.from_origin(corners, 1), scale(z, self.shear[1]));
+        let [reach, error] = reach_and_edge_error(x, y, z);
+        let mut weights = edge_functions(x, y);
         if (weights[0] + weights[1] + weights[2]).abs() < CANCELLED * error {
-            weights = edge_functions_compensated(a, b, c);
+            weights = edge_functions_compensated(x, y);
         }
         let area = weights[0] + weights[1] + weights[2];
         let turn = area.signum();
+        let [u, v, w, _] = scale(weights, turn);
         // Written so that a NaN is a miss.
-        if !(area.abs() > error && weights.iter().all(|&w| turn * w >= -error)) {
+        if !(area.abs() > error && u >= -error && v >= -error && w >= -error) {
             return None;
         }
-        let u = larger(turn * weights[0], 0.0);
-        let v = larger(turn * weights[1], 0.0);
-        let w = larger(turn * weights[2], 0.0);
+        let (u, v, w) = (larger(u, 0.0), larger(v, 0.0), larger(w, 0.0));
         let area = u + v + w;
-        let mut depth = u * a[2] + v * b[2] + w * c[2];
+        let mut depth = u * z[0] + v * z[1] + w * z[2];
         if depth.abs() <= 8.0 * f64::EPSILON * reach * area {
             depth = 0.0; // the ray starts in the plane, as far as can be told
         }
+        let [t, u, v, _] = divide([depth, v, w, 0.0], [area * self.direction[2], area, area, 1.0]);
         let crossing = Crossing {
-            t: (depth / (area * self.direction[2])) as f32,
-            u: (v / area) as f32,
-            v: (w / area) as f32,
+            t: t as f32,
+            u: u as f32,
+            v: v as f32,
         };
         self.confirms(corners, crossing.t).then_some(crossing)
     }
 
-    /// Moves the ray's origin to zero and shears its direction onto the main axis.
+    /// Coordinate `axis` of the corners, less that of the ray's origin.
     #[inline(always)]
-    fn shear_point(&self, p: [f32; 3]) -> [f64; 3] {
-        let z = f64::from(p[2]) - self.origin[2];
-        [
-            f64::from(p[0]) - self.origin[0] - self.shear[0] * z,
-            f64::from(p[1]) - self.origin[1] - self.shear[1] * z,
-            z,
-        ]
+    fn from_origin(&self, corners: &[[f32; 3]; 3], axis: usize) -> Four {
+        let [a, b, c] = corners;
+        let o = self.origin[axis];
+        let widened = [
+            f64::from(a[axis]),
+            f64::from(b[axis]),
+            f64::from(c[axis]),
+            0.0,
+        ];
+        sub(widened, [o; 4])
     }
 
     /// Whether the point at `t` is in the triangle's box, up to the rounding of `t`.
     ///
     /// True of every ordinary hit. It fails only where the origin is closer to the plane than
     /// f64 can tell from the far ends of the triangle; demanding it makes the box culling of
-    /// [`Caster`] exact by construction, for it bounds every hit by the box of its triangle.
+    /// [`Caster`](super::caster::Caster) exact by construction, for it bounds every hit by the
+    /// box of its triangle.
     #[inline(always)]
     fn confirms(&self, corners: &[[f32; 3]; 3], t: f32) -> bool {
         let [a, b, c] = corners;
-        (0..3).all(|k| {
+        let mut inside = true;
+        for k in 0..3 {
             let way = f64::from(t) * self.direction[k];
             let point = self.origin[k] + way;
             let slack = POINT_TOLERANCE * (self.origin[k].abs() + way.abs());
-            let low = f64::from(a[k].min(b[k]).min(c[k]));
-            let high = f64::from(a[k].max(b[k]).max(c[k]));
-            low - slack <= point && point <= high + slack
-        })
+            let low = f64::from(lesser_of(a[k], lesser_of(b[k], c[k])));
+            let high = f64::from(greater_of(a[k], greater_of(b[k], c[k])));
+            // Not `&&`: one branch for all.
+            inside &= (low - slack <= point) & (point <= high + slack);
+        }
+        inside
     }
+}
+
+#[inline(always)]
+fn sub(a: Four, b: Four) -> Four {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]]
+}
+
+#[inline(always)]
+fn mul(a: Four, b: Four) -> Four {
+    [a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3]]
+}
+
+#[inline(always)]
+fn divide(a: Four, b: Four) -> Four {
+    [a[0] / b[0], a[1] / b[1], a[2] / b[2], a[3] / b[3]]
+}
+
+#[inline(always)]
+fn scale(a: Four, factor: f64) -> Four {
+    mul(a, [factor; 4])
 }
 
 /// `f64::max` where there is no NaN, in a single instruction.
 #[inline(always)]
 fn larger(x: f64, y: f64) -> f64 {
     if x > y { x } else { y }
+}
+
+/// `f32::max`, likewise.
+#[inline(always)]
+fn greater_of(x: f32, y: f32) -> f32 {
+    if x > y { x } else { y }
+}
+
+/// `f32::min`, likewise.
+#[inline(always)]
+fn lesser_of(x: f32, y: f32) -> f32 {
+    if x < y { x } else { y }
 }
 
 #[inline(always)]
@@ -135,30 +172,36 @@ fn widen(v: [f32; 3]) -> [f64; 3] {
 /// Edges reach out by so much. It closes the gaps of exactly collinear corners (T-junctions),
 /// where the argument of shared edges does not hold.
 #[inline(always)]
-fn reach_and_edge_error(corners: &[[f64; 3]; 3]) -> [f64; 2] {
-    let [a, b, c] = corners;
-    let largest = |k: usize| larger(larger(a[k].abs(), b[k].abs()), c[k].abs());
-    let (r, z) = (larger(largest(0), largest(1)), largest(2));
+fn reach_and_edge_error(x: Four, y: Four, z: Four) -> [f64; 2] {
+    let largest = |v: Four| larger(larger(v[0].abs(), v[1].abs()), v[2].abs());
+    let (r, z) = (larger(largest(x), largest(y)), largest(z));
     [z, 8.0 * f64::EPSILON * r * (r + z)]
+}
+
+/// What of (c, a, b) and what of (b, c, a) make up the edge functions opposite to a, b and c.
+#[inline(always)]
+fn ends_of_edges(v: Four) -> [Four; 2] {
+    [[v[2], v[0], v[1], 0.0], [v[1], v[2], v[0], 0.0]]
 }
 
 /// Twice the signed areas opposite to the corners a, b, c.
 #[inline(always)]
-fn edge_functions(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> [f64; 3] {
-    let edge = |p: [f64; 3], q: [f64; 3]| p[0] * q[1] - p[1] * q[0];
-    [edge(c, b), edge(a, c), edge(b, a)]
+fn edge_functions(x: Four, y: Four) -> Four {
+    let ([px, qx], [py, qy]) = (ends_of_edges(x), ends_of_edges(y));
+    sub(mul(px, qy), mul(py, qx))
 }
 
 /// The same with the rounding error of each product, for slivers (aspect ratios beyond 2^23)
 /// and triangles seen edge-on.
 #[cold]
-fn edge_functions_compensated(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> [f64; 3] {
-    let edge = |p: [f64; 3], q: [f64; 3]| {
-        let (x, x_error) = two_product(p[0], q[1]);
-        let (y, y_error) = two_product(p[1], q[0]);
-        (x - y) + (x_error - y_error)
+fn edge_functions_compensated(x: Four, y: Four) -> Four {
+    let ([px, qx], [py, qy]) = (ends_of_edges(x), ends_of_edges(y));
+    let edge = |k: usize| {
+        let (a, a_error) = two_product(px[k], qy[k]);
+        let (b, b_error) = two_product(py[k], qx[k]);
+        (a - b) + (a_error - b_error)
     };
-    [edge(c, b), edge(a, c), edge(b, a)]
+    [edge(0), edge(1), edge(2), 0.0]
 }
 
 /// The product and its rounding error, exactly (Dekker 1971, "A Floating-Point Technique for

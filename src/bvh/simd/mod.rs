@@ -43,6 +43,8 @@ pub(super) trait Lanes<const W: usize>: Copy {
     fn max(self, other: Self) -> Self;
     /// The greater magnitude of each pair.
     fn max_abs(self, other: Self) -> Self;
+    /// Each negated where the sign bit of `other` is set.
+    fn with_sign_flipped_by(self, other: Self) -> Self;
     /// Bit `i` says whether `self[i] <= other[i]`; false of NaN.
     fn le(self, other: Self) -> u32;
     /// Bit `i` says whether `self[i] < other[i]`; false of NaN.

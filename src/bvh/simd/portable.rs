@@ -77,6 +77,11 @@ impl<const W: usize> Lanes<W> for Portable<W> {
         magnitude(self).max(magnitude(other))
     }
     #[inline(always)]
+    fn with_sign_flipped_by(self, other: Self) -> Self {
+        let sign = (-0.0f32).to_bits();
+        self.zip(other, |x, y| f32::from_bits(x.to_bits() ^ (y.to_bits() & sign)))
+    }
+    #[inline(always)]
     fn le(self, other: Self) -> u32 {
         self.mask(other, |x, y| x <= y)
     }

@@ -49,7 +49,7 @@ struct Avx512(__m512);
 macro_rules! lanes {
     ($type:ident, $width:literal, $set1:ident, $load:ident, $store:ident, $sub:ident, $add:ident,
      $mul:ident, $fmadd:ident, $fmsub:ident, $fnmadd:ident, $min:ident, $max:ident,
-     $max_abs:ident, $compare:ident) => {
+     $max_abs:ident, $flip:ident, $compare:ident) => {
         // SAFETY (of all blocks in here): a value of this type exists only where `run_avx2` or
         // `run_avx512` called the job, hence on a processor that has the instructions; loads
         // and stores are unaligned ones of exactly the array behind the reference.
@@ -103,6 +103,10 @@ macro_rules! lanes {
                 Self(unsafe { $max_abs(self.0, other.0) })
             }
             #[inline(always)]
+            fn with_sign_flipped_by(self, other: Self) -> Self {
+                Self(unsafe { $flip(self.0, other.0) })
+            }
+            #[inline(always)]
             fn le(self, other: Self) -> u32 {
                 unsafe { $compare::<_CMP_LE_OQ>(self.0, other.0) }
             }
@@ -129,6 +133,7 @@ lanes!(
     _mm256_min_ps,
     _mm256_max_ps,
     max_abs_8,
+    flip_8,
     compare_8
 );
 
@@ -147,6 +152,7 @@ lanes!(
     _mm512_min_ps,
     _mm512_max_ps,
     max_abs_16,
+    flip_16,
     compare_16
 );
 
@@ -155,6 +161,12 @@ lanes!(
 fn max_abs_8(a: __m256, b: __m256) -> __m256 {
     let sign = _mm256_set1_ps(-0.0);
     _mm256_max_ps(_mm256_andnot_ps(sign, a), _mm256_andnot_ps(sign, b))
+}
+
+#[inline]
+#[target_feature(enable = "avx2")]
+fn flip_8(a: __m256, by: __m256) -> __m256 {
+    _mm256_xor_ps(a, _mm256_and_ps(_mm256_set1_ps(-0.0), by))
 }
 
 #[inline]
@@ -168,6 +180,12 @@ fn compare_8<const OPERATOR: i32>(a: __m256, b: __m256) -> u32 {
 fn max_abs_16(a: __m512, b: __m512) -> __m512 {
     // Selects the maximum (1) of magnitudes, sign cleared (2 << 2).
     _mm512_range_ps::<0b1011>(a, b)
+}
+
+#[inline]
+#[target_feature(enable = "avx512f,avx512dq")]
+fn flip_16(a: __m512, by: __m512) -> __m512 {
+    _mm512_xor_ps(a, _mm512_and_ps(_mm512_set1_ps(-0.0), by))
 }
 
 #[inline]
