@@ -23,16 +23,18 @@
 //! directions and coordinates are brought to a range where no product overflows
 //! (`unit_of_direction`).
 
-use super::hit::Search;
 use super::triangle::ExactRay;
 use crate::math::{Aabb, Ray, UNIT_ROUNDOFF};
 
 /// How much larger reciprocal directions are for far planes; 1 + 16u.
-const FAR_PAD: f32 = 1.0 + 16.0 * UNIT_ROUNDOFF;
+pub(super) const FAR_PAD: f32 = 1.0 + 16.0 * UNIT_ROUNDOFF;
 
 /// Widens the range of `t` that boxes and the triangle filter let through: 16u, of which
 /// computing it takes 3u.
 const RANGE_PAD: f32 = 16.0 * UNIT_ROUNDOFF;
+
+/// Relative error of a product of origin and reciprocal direction, with room: 6u.
+pub(super) const PRODUCT_PAD: f32 = 6.0 * UNIT_ROUNDOFF;
 
 /// More than underflow can take away from any distance.
 const TINY: f32 = 64.0 * f32::MIN_POSITIVE;
@@ -51,25 +53,26 @@ pub(super) struct Caster {
     pub axes: [usize; 3],
     /// Whether the ray runs towards lower coordinates, by axis: index of the near planes.
     pub near_side: [usize; 3],
-    /// Reciprocal direction, by axis, for near planes.
-    pub near_inverse: [f32; 3],
-    /// Reciprocal direction, by axis, for far planes.
-    pub far_inverse: [f32; 3],
-    /// What is subtracted from a near plane times `near_inverse`.
-    pub near_offset: [f32; 3],
-    /// What is subtracted from a far plane times `far_inverse`.
-    pub far_offset: [f32; 3],
+    /// Origin, by axis.
+    pub start: [f32; 3],
+    /// Reciprocal direction, by axis, for near planes; that for far planes is larger by
+    /// [`FAR_PAD`].
+    pub inverse: [f32; 3],
+    /// By how much boxes count as larger, by axis, in the units of box distances.
+    pub pad: [f32; 3],
     /// Origin, in the order `axes`.
     pub origin: [f32; 3],
-    /// Slopes of the two lesser axes along the main one.
+    /// Slopes of the two lesser axes along the main one, each rounded twice.
     pub shear: [f32; 2],
     /// Direction, in the order `axes`.
     direction: [f32; 3],
+    /// Reciprocal of its last component.
+    main_inverse: f32,
     /// Box distances are `t * to_distance`; see [`unit_of_direction`].
     to_distance: f64,
 }
 
-/// The range of `t` of a [`Search`], widened, in the units of box distances and of depth
+/// A range of `t`, widened, in the units of box distances and of depth
 /// along the main axis.
 #[derive(Clone, Copy)]
 pub(super) struct Window {
@@ -90,12 +93,14 @@ impl Caster {
     #[inline(always)]
     pub fn new(ray: &Ray, bounds: &Aabb, reach: f32, slack: f32) -> Option<Self> {
         let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
-        let size = [direction[0].abs(), direction[1].abs(), direction[2].abs()];
+        let size = per_axis(|k| direction[k].abs());
         let main = longest(size);
-        let least = LEAST_SLOPE * size[main];
-        let ordinary = ORDINARY_LENGTH.contains(&size[main])
+        let length = size[main];
+        let least = LEAST_SLOPE * length;
+        // Written so that a NaN is not ordinary.
+        let ordinary = ORDINARY_LENGTH.contains(&length)
             && (size[0] >= least && size[1] >= least && size[2] >= least)
-            && within(origin, ORDINARY_COORDINATE)
+            && all_within(origin, ORDINARY_COORDINATE)
             && reach <= ORDINARY_COORDINATE;
         let slopes = if ordinary {
             Slopes {
@@ -107,37 +112,37 @@ impl Caster {
             unusual_slopes(ray, main, bounds, reach, slack)?
         };
 
-        let near_inverse = per_axis(|k| 1.0 / slopes.direction[k]);
-        let far_inverse = per_axis(|k| near_inverse[k] * FAR_PAD);
-        let pad = |product: f32, k: usize| {
-            6.0 * UNIT_ROUNDOFF * product.abs() + (slack * far_inverse[k].abs() + slopes.pad[k])
+        let inverse = per_axis(|k| 1.0 / slopes.direction[k]);
+        let pad = if slack == 0.0 {
+            slopes.pad
+        } else {
+            per_axis(|k| slopes.pad[k] + slack * FAR_PAD * inverse[k].abs())
         };
-        let near = per_axis(|k| origin[k] * near_inverse[k]);
-        let far = per_axis(|k| origin[k] * far_inverse[k]);
         let axes = AXES[main];
         let turned_direction = turned(direction, axes);
+        let main_inverse = 1.0 / turned_direction[2];
         Some(Self {
             axes,
             near_side: per_axis(|k| (direction[k].to_bits() >> 31) as usize),
-            near_inverse,
-            far_inverse,
-            near_offset: per_axis(|k| near[k] + pad(near[k], k)),
-            far_offset: per_axis(|k| far[k] - pad(far[k], k)),
+            start: origin,
+            inverse,
+            pad,
             origin: turned(origin, axes),
             shear: [
-                turned_direction[0] / turned_direction[2],
-                turned_direction[1] / turned_direction[2],
+                turned_direction[0] * main_inverse,
+                turned_direction[1] * main_inverse,
             ],
             direction: turned_direction,
+            main_inverse,
             to_distance: slopes.unit,
         })
     }
 
-    /// What of the tree may still hold a better hit.
+    /// What of the tree may hold a hit from `t_min` to `t_max`.
     #[inline(always)]
-    pub fn window(&self, search: &Search) -> Window {
-        let least = search.t_min * (1.0 - RANGE_PAD);
-        let most = search.t_best * (1.0 + RANGE_PAD);
+    pub fn window(&self, t_min: f32, t_max: f32) -> Window {
+        let least = t_min * (1.0 - RANGE_PAD);
+        let most = t_max * (1.0 + RANGE_PAD);
         let (a, b) = (least * self.direction[2], most * self.direction[2]);
         let (near, far) = if self.to_distance == 1.0 {
             (least, most)
@@ -156,7 +161,16 @@ impl Caster {
         }
     }
 
-    /// For the test that decides. Made anew for each: most rays need it once or not at all.
+    /// The parameter where the depth along the main axis is within `error` of `depth`: at least
+    /// and at most. NaN or infinite where that cannot be computed.
+    #[inline(always)]
+    pub fn span(&self, depth: f32, error: f32) -> [f32; 2] {
+        let t = depth * self.main_inverse;
+        let error = error * self.main_inverse.abs() + 8.0 * UNIT_ROUNDOFF * t.abs() + TINY;
+        [t - error, t + error]
+    }
+
+    /// For the test that decides.
     #[inline(always)]
     pub fn exact(&self) -> ExactRay {
         ExactRay::new(self.origin, self.direction)
@@ -226,7 +240,7 @@ fn turned(v: [f32; 3], axes: [usize; 3]) -> [f32; 3] {
 
 /// Whether no component is beyond `limit`, or NaN.
 #[inline(always)]
-fn within(v: [f32; 3], limit: f32) -> bool {
+fn all_within(v: [f32; 3], limit: f32) -> bool {
     v[0].abs() <= limit && v[1].abs() <= limit && v[2].abs() <= limit
 }
 

@@ -3,7 +3,7 @@
 use super::build::build_over_boxes;
 use super::caster::{Caster, Window};
 use super::count::{Counter, Silent};
-use super::hit::{Hit, Search};
+use super::hit::{Accept, Every, Hit, Search};
 use super::layout::{ChildRef, Node};
 use super::simd::{Job, Lanes, Level};
 use super::traverse::{Visitor, walk};
@@ -145,7 +145,7 @@ impl Forest {
 
     /// As [`Tracer::closest_hit`].
     pub fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
-        self.closest_hit_if(ray, |_| true)
+        self.search::<false, _>(ray, &Every, &mut Silent)
     }
 
     /// As [`Tracer::closest_hit_if`].
@@ -155,7 +155,7 @@ impl Forest {
 
     /// As [`Tracer::any_hit`].
     pub fn any_hit(&self, ray: &Ray) -> bool {
-        self.any_hit_if(ray, |_| true)
+        self.search::<true, _>(ray, &Every, &mut Silent).is_some()
     }
 
     /// As [`Tracer::any_hit_if`].
@@ -181,7 +181,7 @@ impl Forest {
     fn search<const ANY: bool, C: Counter>(
         &self,
         ray: &Ray,
-        accept: &impl Fn(&Hit) -> bool,
+        accept: &impl Accept,
         counter: &mut C,
     ) -> Option<Hit> {
         let slack = self.slack(ray);
@@ -296,7 +296,7 @@ struct Visit<'a, const ANY: bool, A, C> {
 
 impl<const ANY: bool, A, C> Job<WIDTH> for Visit<'_, ANY, A, C>
 where
-    A: Fn(&Hit) -> bool,
+    A: Accept,
     C: Counter,
 {
     type Output = ();
@@ -312,7 +312,7 @@ where
             accept,
             counter,
         } = self;
-        let mut window = caster.window(search);
+        let mut window = caster.window(search.t_min, search.t_best);
         let mut instances = Instances::<ANY, A> {
             forest,
             ray,
@@ -327,7 +327,7 @@ where
                 instances.visit(ChildRef::leaf(leaf, 1), &mut window, counter);
             }
         } else {
-            walk::<S, WIDTH, C>(&forest.nodes, caster, window, counter, instances);
+            walk::<S, ANY, WIDTH, C>(&forest.nodes, caster, window, counter, &mut instances);
         }
     }
 }
@@ -344,7 +344,7 @@ struct Instances<'a, const ANY: bool, A> {
 
 impl<const ANY: bool, A, C> Visitor<C> for Instances<'_, ANY, A>
 where
-    A: Fn(&Hit) -> bool,
+    A: Accept,
     C: Counter,
 {
     #[inline(always)]
@@ -352,10 +352,10 @@ where
         let index = self.forest.leaves[leaf.index()];
         let instance = &self.forest.instances[index as usize];
         let (ray, slack, accept) = (self.ray, self.slack, self.accept);
-        let accept = |hit: &Hit| instance.confirms(ray, hit.t, slack) && accept(hit);
+        let accept = |hit: &Hit| instance.confirms(ray, hit.t, slack) && accept.accept(hit);
         let tree = &self.forest.trees[instance.tree as usize];
         tree.cast::<ANY, C>(&instance.ray(ray), self.search, index, &accept, counter);
-        *window = self.caster.window(self.search);
+        *window = self.caster.window(self.search.t_min, self.search.t_best);
         ANY && self.search.hit.is_some()
     }
 

@@ -8,9 +8,11 @@
 mod build;
 mod caster;
 mod count;
+mod filter;
 mod forest;
 mod hit;
 mod layout;
+mod leaf;
 mod simd;
 mod stats;
 mod traverse;

@@ -3,11 +3,12 @@
 use super::build::{Builder, build};
 use super::caster::{Caster, Window};
 use super::count::{Counter, Silent, TraversalCounts};
-use super::hit::{Hit, Search};
+use super::hit::{Accept, Every, Hit, Search};
 use super::layout::{Block, ChildRef, Node, Tree};
-use super::simd::{Job, Lanes, Level, prefetch};
+use super::simd::{Job, Lanes, Level};
 use super::stats::TreeStats;
-use super::traverse::{Filter, Visitor, search_block, walk};
+use super::leaf::Leaves;
+use super::traverse::{Visitor, walk};
 use crate::math::{Aabb, Ray, Vec3};
 
 /// Which vectors a tree is laid out for and traced with. Hits are the same with all.
@@ -100,7 +101,7 @@ impl Bvh {
     /// The first hit along `ray` in `t_min < t < t_max`; among several at the same `t` the
     /// lowest triangle. `None` where there is none.
     pub fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
-        self.closest_hit_if(ray, |_| true)
+        self.search::<false, _>(ray, &Every, &mut Silent)
     }
 
     /// The first hit that `accept` does not turn down.
@@ -112,7 +113,7 @@ impl Bvh {
 
     /// Whether anything is hit in `t_min < t < t_max`.
     pub fn any_hit(&self, ray: &Ray) -> bool {
-        self.any_hit_if(ray, |_| true)
+        self.search::<true, _>(ray, &Every, &mut Silent).is_some()
     }
 
     /// Whether there is a hit that `accept` does not turn down.
@@ -122,12 +123,12 @@ impl Bvh {
 
     /// [`Bvh::closest_hit`], adding to `counts` what it looked at.
     pub fn closest_hit_counted(&self, ray: &Ray, counts: &mut TraversalCounts) -> Option<Hit> {
-        self.search::<false, _>(ray, &|_: &Hit| true, counts)
+        self.search::<false, _>(ray, &Every, counts)
     }
 
     /// [`Bvh::any_hit`], adding to `counts` what it looked at.
     pub fn any_hit_counted(&self, ray: &Ray, counts: &mut TraversalCounts) -> bool {
-        self.search::<true, _>(ray, &|_: &Hit| true, counts)
+        self.search::<true, _>(ray, &Every, counts)
             .is_some()
     }
 
@@ -162,7 +163,7 @@ impl Bvh {
     fn search<const ANY: bool, C: Counter>(
         &self,
         ray: &Ray,
-        accept: &impl Fn(&Hit) -> bool,
+        accept: &impl Accept,
         counter: &mut C,
     ) -> Option<Hit> {
         let mut search = Search::new(ray.t_min, ray.t_max);
@@ -176,7 +177,7 @@ impl Bvh {
         ray: &Ray,
         search: &mut Search,
         instance: u32,
-        accept: &impl Fn(&Hit) -> bool,
+        accept: &impl Accept,
         counter: &mut C,
     ) {
         match &self.body {
@@ -215,7 +216,7 @@ struct Cast<'a, const ANY: bool, const W: usize, A, C> {
 
 impl<const ANY: bool, const W: usize, A, C> Job<W> for Cast<'_, ANY, W, A, C>
 where
-    A: Fn(&Hit) -> bool,
+    A: Accept,
     C: Counter,
 {
     type Output = ();
@@ -235,63 +236,39 @@ where
         let Some(ray) = &Caster::new(ray, &tree.bounds, reach, 0.0) else {
             return;
         };
-        let mut window = ray.window(search);
-        let mut blocks = Blocks::<ANY, W, S, A> {
-            tree,
-            ray,
-            filter: Filter::new(ray),
-            search,
-            instance,
-            accept,
-        };
-        if !tree.nodes.is_empty() {
-            walk::<S, W, C>(&tree.nodes, ray, window, counter, blocks);
-            return;
-        }
-        let mut left = tree.triangles;
-        for block in 0..tree.blocks.len() {
-            let child = ChildRef::leaf(block, left.min(W));
-            left -= left.min(W);
-            if blocks.visit(child, &mut window, counter) {
-                return;
-            }
+        let window = ray.window(search.t_min, search.t_best);
+        let mut leaves = Leaves::<ANY, W, S, A>::new(&tree.blocks, ray, search, instance, accept);
+        visit_all(tree, ray, window, &mut leaves, counter);
+        if !leaves.finish(counter) {
+            let mut leaves = leaves.without_delay();
+            visit_all(tree, ray, window, &mut leaves, counter);
         }
     }
 }
 
-/// Searches the blocks that a walk comes to.
-struct Blocks<'a, const ANY: bool, const W: usize, S, A> {
-    tree: &'a Tree<W>,
-    ray: &'a Caster,
-    filter: Filter<S>,
-    search: &'a mut Search,
-    instance: u32,
-    accept: &'a A,
-}
-
-impl<const ANY: bool, const W: usize, S, A, C> Visitor<C> for Blocks<'_, ANY, W, S, A>
-where
+/// Has `leaves` visit all that may matter.
+#[inline(always)]
+fn visit_all<const ANY: bool, const W: usize, S, A, C>(
+    tree: &Tree<W>,
+    ray: &Caster,
+    mut window: Window,
+    leaves: &mut Leaves<'_, ANY, W, S, A>,
+    counter: &mut C,
+) where
     S: Lanes<W>,
-    A: Fn(&Hit) -> bool,
+    A: Accept,
     C: Counter,
 {
-    #[inline(always)]
-    fn visit(&mut self, leaf: ChildRef, window: &mut Window, counter: &mut C) -> bool {
-        search_block::<S, W, ANY, C>(
-            &self.tree.blocks[leaf.index()],
-            leaf.count(),
-            self.ray,
-            &self.filter,
-            self.search,
-            window,
-            self.instance,
-            self.accept,
-            counter,
-        )
+    if !tree.nodes.is_empty() {
+        walk::<S, ANY, W, C>(&tree.nodes, ray, window, counter, leaves);
+        return;
     }
-
-    #[inline(always)]
-    fn announce(&self, leaf: ChildRef) {
-        prefetch(&self.tree.blocks, leaf.index());
+    let mut left = tree.triangles;
+    for block in 0..tree.blocks.len() {
+        let child = ChildRef::leaf(block, left.min(W));
+        left -= left.min(W);
+        if leaves.visit(child, &mut window, counter) {
+            return;
+        }
     }
 }

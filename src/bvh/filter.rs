@@ -1,0 +1,214 @@
+//! The triangle filter: which triangles of a block need the exact test, in `f32`, all at once.
+
+use super::caster::{Caster, Window};
+use super::layout::Block;
+use super::simd::Lanes;
+use crate::math::UNIT_ROUNDOFF;
+
+/// Triangles of a block that may be hit within the window.
+pub(super) struct Candidates<S> {
+    /// Which; at least one.
+    pub lanes: u32,
+    /// Those of all triangles that the line of the ray crosses for certain.
+    pub certain: u32,
+    /// Where.
+    pub depth: Depth<S>,
+}
+
+/// Depths of crossings along the main axis, with bounds of their errors.
+///
+/// With edge functions of sum A the crossing of a triangle at the depths z₁, z₂ and z₃ is at the
+/// depth where f(h) = Σ eᵢ (zᵢ − h) = 0. Computed from differences to z₁ it is off by at most
+/// 4e (|z₁ − h| + D) + 12u (|A| + 8e)(Z + |h|), e being the error of an edge function and D the
+/// largest of the differences.
+pub(super) struct Depth<S> {
+    /// Depth of the first corner.
+    first: S,
+    /// f(z₁), made positive where A is negative.
+    beyond_first: S,
+    /// |A|: twice the sheared triangle's area.
+    area: S,
+    /// 4e.
+    error: S,
+    /// D.
+    spread: S,
+    /// Z: largest depth of a corner, in magnitude.
+    reach: S,
+}
+
+impl<S> Depth<S> {
+    #[inline(always)]
+    fn new<const W: usize>(edges: [S; 3], depths: [S; 3], error: S, reach: S) -> Self
+    where
+        S: Lanes<W>,
+    {
+        let [u, v, w] = edges;
+        let area = u.add(v.add(w));
+        let (to_second, to_third) = (depths[1].sub(depths[0]), depths[2].sub(depths[0]));
+        Self {
+            first: depths[0],
+            beyond_first: v
+                .mul_add(to_second, w.mul(to_third))
+                .with_sign_flipped_by(area),
+            area: area.max_abs(area),
+            error: error.mul(S::splat(4.0)),
+            spread: to_second.max_abs(to_third),
+            reach,
+        }
+    }
+
+    /// Which crossings are not in the window for certain. The sign of A is certain beyond 8e.
+    #[inline(always)]
+    fn certainly_outside<const W: usize>(&self, window: &Window) -> u32
+    where
+        S: Lanes<W>,
+    {
+        let twice_error = self.error.add(self.error);
+        let (value, error) = self.beyond(S::splat(window.depth[0]), twice_error);
+        let before = error.lt(S::splat(0.0).sub(value));
+        let (value, error) = self.beyond(S::splat(window.depth[1]), twice_error);
+        (before | error.lt(value)) & twice_error.lt(self.area)
+    }
+
+    /// f(`limit`) and its error.
+    #[inline(always)]
+    fn beyond<const W: usize>(&self, limit: S, twice_error: S) -> (S, S)
+    where
+        S: Lanes<W>,
+    {
+        let from_limit = self.first.sub(limit);
+        let value = from_limit.mul_add(self.area, self.beyond_first);
+        let distance = from_limit.max_abs(from_limit).add(self.spread);
+        let rounding = self
+            .area
+            .add(twice_error)
+            .mul(S::splat(12.0 * UNIT_ROUNDOFF));
+        let size = self.reach.add(limit.max_abs(limit));
+        let error = distance
+            .mul_add(self.error, S::splat(f32::MIN_POSITIVE))
+            .add(size.mul(rounding));
+        (value, error)
+    }
+
+    /// The depth in `lane` and a bound of its error; not finite where there is none.
+    #[inline(always)]
+    pub fn get<const W: usize>(&self, lane: usize) -> [f32; 2]
+    where
+        S: Lanes<W>,
+    {
+        let per_area = 1.0 / get(self.area, lane);
+        let from_first = get(self.beyond_first, lane) * per_area;
+        let depth = get(self.first, lane) + from_first;
+        // Where the sum of edge functions is in doubt, so is everything.
+        let doubt = get(self.error, lane) * per_area;
+        let doubt = if doubt < 0.25 { doubt } else { f32::INFINITY };
+        let size = get(self.reach, lane) + depth.abs();
+        let distance = from_first.abs() + get(self.spread, lane);
+        let rounding = 32.0 * UNIT_ROUNDOFF * size;
+        [depth, 2.0 * doubt * distance + rounding]
+    }
+}
+
+/// The number in `lane`. No closure: see [`Visitor::visit`](super::traverse::Visitor::visit).
+#[inline(always)]
+fn get<S: Lanes<W>, const W: usize>(v: S, lane: usize) -> f32 {
+    let mut all = [0.0; W];
+    v.store(&mut all);
+    all[lane]
+}
+
+/// A ray's constants for the triangle filter, in vectors.
+pub(super) struct Filter<S> {
+    axes: [usize; 3],
+    origin: [S; 3],
+    shear: [S; 2],
+}
+
+impl<S> Filter<S> {
+    #[inline(always)]
+    pub fn new<const W: usize>(ray: &Caster) -> Self
+    where
+        S: Lanes<W>,
+    {
+        Self {
+            axes: ray.axes,
+            origin: splat(ray.origin),
+            shear: [S::splat(ray.shear[0]), S::splat(ray.shear[1])],
+        }
+    }
+
+    /// The triangles of `block` that are not certain to be missed: a superset of those that
+    /// [`ExactRay::cross`](super::triangle::ExactRay::cross) accepts within the window.
+    ///
+    /// The same sheared edge functions as there, in `f32`. With R the largest sheared and Z
+    /// the largest main coordinate, each sheared coordinate is off by at most 2uR + 5uZ, an
+    /// edge function hence by less than 12uR² + 20uRZ + 60u²Z²; what is compared with,
+    /// e = 24u(R + 5uZ)(R + Z), is more. A triangle is out where one edge function is certainly
+    /// negative and another certainly positive. A NaN makes nothing certain.
+    #[inline(always)]
+    pub fn test<const W: usize>(
+        &self,
+        block: &Block<W>,
+        count: u32,
+        window: &Window,
+    ) -> Option<Candidates<S>>
+    where
+        S: Lanes<W>,
+    {
+        let a = self.shear(&block.corners[0]);
+        let b = self.shear(&block.corners[1]);
+        let c = self.shear(&block.corners[2]);
+        let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
+
+        let x = a[0].max_abs(b[0]).max_abs(c[0]);
+        let y = a[1].max_abs(b[1]).max_abs(c[1]);
+        let z = a[2].max_abs(b[2]).max_abs(c[2]);
+        let r = x.max(y);
+        let error = z
+            .mul_add(S::splat(5.0 * UNIT_ROUNDOFF), r)
+            .mul(S::splat(24.0 * UNIT_ROUNDOFF))
+            .mul_add(r.add(z), S::splat(f32::MIN_POSITIVE));
+        let minus_error = S::splat(0.0).sub(error);
+        let (least, most) = (u.min(v).min(w), u.max(v).max(w));
+        let lanes = !(least.lt(minus_error) & error.lt(most)) & (u32::MAX >> (32 - count));
+        if lanes == 0 {
+            return None;
+        }
+
+        let depth = Depth::new([u, v, w], [a[2], b[2], c[2]], error, z);
+        let lanes = lanes & !depth.certainly_outside(window);
+        (lanes != 0).then(|| Candidates {
+            lanes,
+            certain: error.lt(least) | most.lt(minus_error),
+            depth,
+        })
+    }
+
+    /// One corner of each triangle, moved so that the ray starts at the origin and sheared so
+    /// that it runs along the last axis.
+    #[inline(always)]
+    fn shear<const W: usize>(&self, points: &[[f32; W]; 3]) -> [S; 3]
+    where
+        S: Lanes<W>,
+    {
+        let z = S::load(&points[self.axes[2]]).sub(self.origin[2]);
+        let x = S::load(&points[self.axes[0]]).sub(self.origin[0]);
+        let y = S::load(&points[self.axes[1]]).sub(self.origin[1]);
+        [
+            z.neg_mul_add(self.shear[0], x),
+            z.neg_mul_add(self.shear[1], y),
+            z,
+        ]
+    }
+}
+
+/// Twice the area between the origin, `p` and `q`.
+#[inline(always)]
+fn edge<S: Lanes<W>, const W: usize>(p: [S; 3], q: [S; 3]) -> S {
+    p[0].mul_sub(q[1], p[1].mul(q[0]))
+}
+
+#[inline(always)]
+fn splat<S: Lanes<W>, const W: usize>(v: [f32; 3]) -> [S; 3] {
+    [S::splat(v[0]), S::splat(v[1]), S::splat(v[2])]
+}
