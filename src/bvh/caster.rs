@@ -27,14 +27,14 @@ use super::triangle::ExactRay;
 use crate::math::{Aabb, Ray, UNIT_ROUNDOFF};
 
 /// How much larger reciprocal directions are for far planes; 1 + 16u.
-pub(super) const FAR_PAD: f32 = 1.0 + 16.0 * UNIT_ROUNDOFF;
+const FAR_PAD: f32 = 1.0 + 16.0 * UNIT_ROUNDOFF;
 
 /// Widens the range of `t` that boxes and the triangle filter let through: 16u, of which
 /// computing it takes 3u.
 const RANGE_PAD: f32 = 16.0 * UNIT_ROUNDOFF;
 
 /// Relative error of a product of origin and reciprocal direction, with room: 6u.
-pub(super) const PRODUCT_PAD: f32 = 6.0 * UNIT_ROUNDOFF;
+const PRODUCT_PAD: f32 = 6.0 * UNIT_ROUNDOFF;
 
 /// More than underflow can take away from any distance.
 const TINY: f32 = 64.0 * f32::MIN_POSITIVE;
@@ -53,21 +53,20 @@ pub(super) struct Caster {
     pub axes: [usize; 3],
     /// Whether the ray runs towards lower coordinates, by axis: index of the near planes.
     pub near_side: [usize; 3],
-    /// Origin, by axis.
-    pub start: [f32; 3],
-    /// Reciprocal direction, by axis, for near planes; that for far planes is larger by
-    /// [`FAR_PAD`].
-    pub inverse: [f32; 3],
-    /// By how much boxes count as larger, by axis, in the units of box distances.
-    pub pad: [f32; 3],
+    /// Reciprocal direction, by axis, for near planes.
+    pub near_inverse: [f32; 3],
+    /// Reciprocal direction, by axis, for far planes.
+    pub far_inverse: [f32; 3],
+    /// What is subtracted from a near plane times `near_inverse`.
+    pub near_offset: [f32; 3],
+    /// What is subtracted from a far plane times `far_inverse`.
+    pub far_offset: [f32; 3],
     /// Origin, in the order `axes`.
     pub origin: [f32; 3],
     /// Slopes of the two lesser axes along the main one, each rounded twice.
     pub shear: [f32; 2],
     /// Direction, in the order `axes`.
     direction: [f32; 3],
-    /// Reciprocal of its last component.
-    main_inverse: f32,
     /// Box distances are `t * to_distance`; see [`unit_of_direction`].
     to_distance: f64,
 }
@@ -112,28 +111,32 @@ impl Caster {
             unusual_slopes(ray, main, bounds, reach, slack)?
         };
 
-        let inverse = per_axis(|k| 1.0 / slopes.direction[k]);
+        let near_inverse = per_axis(|k| 1.0 / slopes.direction[k]);
+        let far_inverse = per_axis(|k| near_inverse[k] * FAR_PAD);
         let pad = if slack == 0.0 {
             slopes.pad
         } else {
-            per_axis(|k| slopes.pad[k] + slack * FAR_PAD * inverse[k].abs())
+            per_axis(|k| slopes.pad[k] + slack * far_inverse[k].abs())
         };
+        let near = per_axis(|k| origin[k] * near_inverse[k]);
+        let far = per_axis(|k| origin[k] * far_inverse[k]);
+
         let axes = AXES[main];
         let turned_direction = turned(direction, axes);
         let main_inverse = 1.0 / turned_direction[2];
         Some(Self {
             axes,
             near_side: per_axis(|k| (direction[k].to_bits() >> 31) as usize),
-            start: origin,
-            inverse,
-            pad,
+            near_inverse,
+            far_inverse,
+            near_offset: per_axis(|k| near[k] + (PRODUCT_PAD * near[k].abs() + pad[k])),
+            far_offset: per_axis(|k| far[k] - (PRODUCT_PAD * far[k].abs() + pad[k])),
             origin: turned(origin, axes),
             shear: [
                 turned_direction[0] * main_inverse,
                 turned_direction[1] * main_inverse,
             ],
             direction: turned_direction,
-            main_inverse,
             to_distance: slopes.unit,
         })
     }
@@ -159,15 +162,6 @@ impl Caster {
                 [b - TINY, a + TINY]
             },
         }
-    }
-
-    /// The parameter where the depth along the main axis is within `error` of `depth`: at least
-    /// and at most. NaN or infinite where that cannot be computed.
-    #[inline(always)]
-    pub fn span(&self, depth: f32, error: f32) -> [f32; 2] {
-        let t = depth * self.main_inverse;
-        let error = error * self.main_inverse.abs() + 8.0 * UNIT_ROUNDOFF * t.abs() + TINY;
-        [t - error, t + error]
     }
 
     /// For the test that decides.

@@ -5,23 +5,13 @@ use super::layout::Block;
 use super::simd::Lanes;
 use crate::math::UNIT_ROUNDOFF;
 
-/// Triangles of a block that may be hit within the window.
-pub(super) struct Candidates<S> {
-    /// Which; at least one.
-    pub lanes: u32,
-    /// Those of all triangles that the line of the ray crosses for certain.
-    pub certain: u32,
-    /// Where.
-    pub depth: Depth<S>,
-}
-
 /// Depths of crossings along the main axis, with bounds of their errors.
 ///
 /// With edge functions of sum A the crossing of a triangle at the depths z₁, z₂ and z₃ is at the
 /// depth where f(h) = Σ eᵢ (zᵢ − h) = 0. Computed from differences to z₁ it is off by at most
 /// 4e (|z₁ − h| + D) + 12u (|A| + 8e)(Z + |h|), e being the error of an edge function and D the
 /// largest of the differences.
-pub(super) struct Depth<S> {
+struct Depth<S> {
     /// Depth of the first corner.
     first: S,
     /// f(z₁), made positive where A is negative.
@@ -89,32 +79,6 @@ impl<S> Depth<S> {
             .add(size.mul(rounding));
         (value, error)
     }
-
-    /// The depth in `lane` and a bound of its error; not finite where there is none.
-    #[inline(always)]
-    pub fn get<const W: usize>(&self, lane: usize) -> [f32; 2]
-    where
-        S: Lanes<W>,
-    {
-        let per_area = 1.0 / get(self.area, lane);
-        let from_first = get(self.beyond_first, lane) * per_area;
-        let depth = get(self.first, lane) + from_first;
-        // Where the sum of edge functions is in doubt, so is everything.
-        let doubt = get(self.error, lane) * per_area;
-        let doubt = if doubt < 0.25 { doubt } else { f32::INFINITY };
-        let size = get(self.reach, lane) + depth.abs();
-        let distance = from_first.abs() + get(self.spread, lane);
-        let rounding = 32.0 * UNIT_ROUNDOFF * size;
-        [depth, 2.0 * doubt * distance + rounding]
-    }
-}
-
-/// The number in `lane`. No closure: see [`Visitor::visit`](super::traverse::Visitor::visit).
-#[inline(always)]
-fn get<S: Lanes<W>, const W: usize>(v: S, lane: usize) -> f32 {
-    let mut all = [0.0; W];
-    v.store(&mut all);
-    all[lane]
 }
 
 /// A ray's constants for the triangle filter, in vectors.
@@ -151,7 +115,7 @@ impl<S> Filter<S> {
         block: &Block<W>,
         count: u32,
         window: &Window,
-    ) -> Option<Candidates<S>>
+    ) -> u32
     where
         S: Lanes<W>,
     {
@@ -172,16 +136,11 @@ impl<S> Filter<S> {
         let (least, most) = (u.min(v).min(w), u.max(v).max(w));
         let lanes = !(least.lt(minus_error) & error.lt(most)) & (u32::MAX >> (32 - count));
         if lanes == 0 {
-            return None;
+            return 0;
         }
 
         let depth = Depth::new([u, v, w], [a[2], b[2], c[2]], error, z);
-        let lanes = lanes & !depth.certainly_outside(window);
-        (lanes != 0).then(|| Candidates {
-            lanes,
-            certain: error.lt(least) | most.lt(minus_error),
-            depth,
-        })
+        lanes & !depth.certainly_outside(window)
     }
 
     /// One corner of each triangle, moved so that the ray starts at the origin and sheared so

@@ -3,10 +3,10 @@
 use super::build::build_over_boxes;
 use super::caster::{Caster, Window};
 use super::count::{Counter, Silent};
-use super::hit::{Accept, Every, Hit, Search};
+use super::hit::{Hit, Search};
 use super::layout::{ChildRef, Node};
-use super::simd::{Job, Lanes, Level};
-use super::traverse::{Visitor, walk};
+use super::simd::{Job, Lanes, Level, Run};
+use super::traverse::{Leaves, Stop, Walk};
 use super::tree::Bvh;
 use crate::math::{Aabb, DAffine3, DVec3, Ray, UNIT_ROUNDOFF, Vec3};
 
@@ -145,7 +145,7 @@ impl Forest {
 
     /// As [`Tracer::closest_hit`].
     pub fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
-        self.search::<false, _>(ray, &Every, &mut Silent)
+        self.closest_hit_if(ray, |_| true)
     }
 
     /// As [`Tracer::closest_hit_if`].
@@ -155,7 +155,7 @@ impl Forest {
 
     /// As [`Tracer::any_hit`].
     pub fn any_hit(&self, ray: &Ray) -> bool {
-        self.search::<true, _>(ray, &Every, &mut Silent).is_some()
+        self.any_hit_if(ray, |_| true)
     }
 
     /// As [`Tracer::any_hit_if`].
@@ -181,22 +181,35 @@ impl Forest {
     fn search<const ANY: bool, C: Counter>(
         &self,
         ray: &Ray,
-        accept: &impl Accept,
+        accept: &impl Fn(&Hit) -> bool,
         counter: &mut C,
     ) -> Option<Hit> {
         let slack = self.slack(ray);
         // A little more than `slack`: the caster rounds what it makes of it.
         let caster = Caster::new(ray, &self.bounds, self.reach, 1.001 * slack)?;
         let mut search = Search::new(ray.t_min, ray.t_max);
-        self.level.run8(Visit::<ANY, _, _> {
-            forest: self,
-            ray,
-            caster: &caster,
-            slack,
-            search: &mut search,
-            accept,
+        let root = match (self.nodes.is_empty(), self.leaves.is_empty()) {
+            (false, _) => ChildRef::node(0),
+            (true, false) => ChildRef::leaf(0, 1), // where there are two there is a node
+            (true, true) => return None,
+        };
+        let mut walk = Walk::new(root, caster.window(search.t_min, search.t_best));
+        while let Some(stop) = self.level.run(Step::<ANY, C> {
+            nodes: &self.nodes,
+            ray: &caster,
+            walk: &mut walk,
             counter,
-        });
+        }) {
+            let index = self.leaves[stop.leaf.index()];
+            let instance = &self.instances[index as usize];
+            let accept = |hit: &Hit| instance.confirms(ray, hit.t, slack) && accept(hit);
+            let tree = &self.trees[instance.tree as usize];
+            tree.cast::<ANY, C>(&instance.ray(ray), &mut search, index, &accept, counter);
+            if ANY && search.hit.is_some() {
+                break;
+            }
+            walk.window = caster.window(search.t_min, search.t_best);
+        }
         search.hit
     }
 
@@ -283,80 +296,41 @@ fn condition_number(matrix: &DAffine3, inverse: &DAffine3) -> f64 {
     norm(matrix) * norm(inverse)
 }
 
-/// A search in a forest, to be compiled for each kind of vectors.
-struct Visit<'a, const ANY: bool, A, C> {
-    forest: &'a Forest,
-    ray: &'a Ray,
-    caster: &'a Caster,
-    slack: f32,
-    search: &'a mut Search,
-    accept: &'a A,
+/// A walk to the next instance, to be compiled for each kind of vectors.
+struct Step<'a, const ANY: bool, C> {
+    nodes: &'a [Node<WIDTH>],
+    ray: &'a Caster,
+    walk: &'a mut Walk,
     counter: &'a mut C,
 }
 
-impl<const ANY: bool, A, C> Job<WIDTH> for Visit<'_, ANY, A, C>
-where
-    A: Accept,
-    C: Counter,
-{
-    type Output = ();
+impl<const ANY: bool, C: Counter> Job<WIDTH> for Step<'_, ANY, C> {
+    type Output = Option<Stop>;
 
     #[inline(always)]
-    fn run<S: Lanes<WIDTH>>(self) {
+    fn run<S: Lanes<WIDTH>>(self) -> Option<Stop> {
         let Self {
-            forest,
+            nodes,
             ray,
-            caster,
-            slack,
-            search,
-            accept,
+            walk,
             counter,
         } = self;
-        let mut window = caster.window(search.t_min, search.t_best);
-        let mut instances = Instances::<ANY, A> {
-            forest,
-            ray,
-            caster,
-            slack,
-            search,
-            accept,
-        };
-        if forest.nodes.is_empty() {
-            for leaf in 0..forest.leaves.len() {
-                // At most one: where there are two there is a node.
-                instances.visit(ChildRef::leaf(leaf, 1), &mut window, counter);
-            }
-        } else {
-            walk::<S, ANY, WIDTH, C>(&forest.nodes, caster, window, counter, &mut instances);
-        }
+        walk.next::<S, ANY, WIDTH, _>(nodes, ray, &Instances, counter)
     }
 }
 
-/// Searches the instances that a walk comes to.
-struct Instances<'a, const ANY: bool, A> {
-    forest: &'a Forest,
-    ray: &'a Ray,
-    caster: &'a Caster,
-    slack: f32,
-    search: &'a mut Search,
-    accept: &'a A,
-}
+/// The leaves of the tree over instances: each is worth a look.
+struct Instances;
 
-impl<const ANY: bool, A, C> Visitor<C> for Instances<'_, ANY, A>
-where
-    A: Accept,
-    C: Counter,
-{
+impl Leaves<WIDTH> for Instances {
+    type Test<S> = ();
+
     #[inline(always)]
-    fn visit(&mut self, leaf: ChildRef, window: &mut Window, counter: &mut C) -> bool {
-        let index = self.forest.leaves[leaf.index()];
-        let instance = &self.forest.instances[index as usize];
-        let (ray, slack, accept) = (self.ray, self.slack, self.accept);
-        let accept = |hit: &Hit| instance.confirms(ray, hit.t, slack) && accept.accept(hit);
-        let tree = &self.forest.trees[instance.tree as usize];
-        tree.cast::<ANY, C>(&instance.ray(ray), self.search, index, &accept, counter);
-        *window = self.caster.window(self.search.t_min, self.search.t_best);
-        ANY && self.search.hit.is_some()
+    fn constants<S: Lanes<WIDTH>>(&self, _: &Caster) {}
+
+    #[inline(always)]
+    fn test<S: Lanes<WIDTH>>(&self, (): &(), _: ChildRef, _: &Window) -> u32 {
+        1
     }
 
     #[inline(always)]

@@ -30,33 +30,6 @@ pub(super) fn key(instance: u32, triangle: u32) -> u64 {
     u64::from(instance) << 32 | u64::from(triangle)
 }
 
-/// Which hits count.
-pub(super) trait Accept {
-    /// Whether all do.
-    const ALL: bool;
-    /// Whether `hit` does.
-    fn accept(&self, hit: &Hit) -> bool;
-}
-
-/// All hits count.
-pub(super) struct Every;
-
-impl Accept for Every {
-    const ALL: bool = true;
-    #[inline(always)]
-    fn accept(&self, _: &Hit) -> bool {
-        true
-    }
-}
-
-impl<F: Fn(&Hit) -> bool> Accept for F {
-    const ALL: bool = false;
-    #[inline(always)]
-    fn accept(&self, hit: &Hit) -> bool {
-        self(hit)
-    }
-}
-
 /// The part of a ray that is still looked at, and the best hit in it so far.
 ///
 /// Hits compete by `(t, instance, triangle)`, lowest first. The open end of the ray is the

@@ -12,7 +12,6 @@ mod filter;
 mod forest;
 mod hit;
 mod layout;
-mod leaf;
 mod simd;
 mod stats;
 mod traverse;

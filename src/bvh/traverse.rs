@@ -3,10 +3,10 @@
 //! Children are visited nearest first; those left behind wait on a stack with their distance
 //! and are dropped when a hit nearer than that has been found meanwhile.
 
-use super::caster::{Caster, FAR_PAD, PRODUCT_PAD, Window};
+use super::caster::{Caster, Window};
 use super::count::Counter;
 use super::layout::{ChildRef, Node};
-use super::simd::{Entry, Lanes, Stack, StackSpace, prefetch};
+use super::simd::{Entry, Lanes, Stack, prefetch};
 
 /// A ray's constants for the box test, in vectors.
 struct BoxTest<S> {
@@ -30,22 +30,12 @@ impl<S> AxisTest<S> {
     where
         S: Lanes<W>,
     {
-        let start = S::splat(ray.start[axis]);
-        let pad = S::splat(ray.pad[axis]);
-        let near_inverse = S::splat(ray.inverse[axis]);
-        let far_inverse = near_inverse.mul(S::splat(FAR_PAD));
-        let near = start.mul(near_inverse);
-        let far = start.mul(far_inverse);
         Self {
             near_side: ray.near_side[axis],
-            near_inverse,
-            far_inverse,
-            near_offset: near
-                .max_abs(near)
-                .mul_add(S::splat(PRODUCT_PAD), near.add(pad)),
-            far_offset: far
-                .max_abs(far)
-                .neg_mul_add(S::splat(PRODUCT_PAD), far.sub(pad)),
+            near_inverse: S::splat(ray.near_inverse[axis]),
+            far_inverse: S::splat(ray.far_inverse[axis]),
+            near_offset: S::splat(ray.near_offset[axis]),
+            far_offset: S::splat(ray.far_offset[axis]),
         }
     }
 
@@ -99,59 +89,93 @@ impl<S> BoxTest<S> {
     }
 }
 
-/// What is done at a leaf.
-pub(super) trait Visitor<C> {
-    /// Looks at `leaf`, narrows `window` to what may still hold a better hit, and says whether
-    /// the search is over. Must be `#[inline(always)]`: a function of its own, such as a
+/// What stands at the leaves of a walk.
+pub(super) trait Leaves<const W: usize> {
+    /// A ray's constants for it, in vectors.
+    type Test<S>;
+    /// Makes them. As all of these functions `#[inline(always)]`: one of its own, such as a
     /// closure may become, would lack the instruction set of the walk.
-    fn visit(&mut self, leaf: ChildRef, window: &mut Window, counter: &mut C) -> bool;
-
-    /// Is told that `leaf` will be visited soon. `#[inline(always)]`, too.
+    fn constants<S: Lanes<W>>(&self, ray: &Caster) -> Self::Test<S>;
+    /// Which things in `leaf` may be hit within `window`: where there are any the walk pauses.
+    fn test<S: Lanes<W>>(&self, test: &Self::Test<S>, leaf: ChildRef, window: &Window) -> u32;
+    /// Is told that `leaf` will be visited soon.
     fn announce(&self, leaf: ChildRef);
 }
 
-/// Walks from the first of `nodes` to the leaves that may hold a better hit, nearest first.
-#[inline(always)]
-pub(super) fn walk<S, const ANY: bool, const W: usize, C: Counter>(
-    nodes: &[Node<W>],
-    ray: &Caster,
-    mut window: Window,
-    counter: &mut C,
-    visitor: &mut impl Visitor<C>,
-) where
-    S: Lanes<W>,
-{
-    let boxes = BoxTest::<S>::new(ray);
-    let near = S::splat(window.near);
-    let mut space = StackSpace::new();
-    let mut stack = Stack::new(&mut space);
-    let mut current = ChildRef::node(0);
-    loop {
-        if current.is_leaf() {
-            if visitor.visit(current, &mut window, counter) {
-                return;
-            }
-        } else {
-            counter.node();
-            let node = &nodes[current.index()];
-            let (mask, enter) = boxes.test(node, near, S::splat(window.far));
-            let announce = |entry: Entry| match entry.child() {
-                leaf if leaf.is_leaf() => visitor.announce(leaf),
-                child => prefetch(nodes, child.index()),
-            };
-            if let Some(child) = nearest_child::<S, ANY, W>(node, mask, enter, &mut stack, announce) {
-                current = child;
-                continue;
-            }
-        }
+/// A pause of a walk.
+pub(super) struct Stop {
+    /// The leaf it came to.
+    pub leaf: ChildRef,
+    /// What [`Leaves::test`] said of it.
+    pub lanes: u32,
+}
+
+/// A walk through a tree, nearest children first, that pauses at leaves with something in them.
+///
+/// It pauses so that what is done there, which is scalar and much longer, is compiled apart and
+/// does not crowd the loop's constants out of the registers.
+pub(super) struct Walk {
+    stack: Stack,
+    /// Where hits still matter. To be narrowed in a pause.
+    pub window: Window,
+}
+
+impl Walk {
+    /// From `root` down.
+    #[inline(always)]
+    pub fn new(root: ChildRef, window: Window) -> Self {
+        let mut stack = Stack::new();
+        stack.push(Entry::new(window.near, root));
+        Self { stack, window }
+    }
+
+    /// Goes on to the next leaf that has something in it; `None` at the end.
+    ///
+    /// With `ANY` children are not sorted beyond the first two.
+    #[inline(always)]
+    pub fn next<S, const ANY: bool, const W: usize, L: Leaves<W>>(
+        &mut self,
+        nodes: &[Node<W>],
+        ray: &Caster,
+        leaves: &L,
+        counter: &mut impl Counter,
+    ) -> Option<Stop>
+    where
+        S: Lanes<W>,
+    {
+        let boxes = BoxTest::<S>::new(ray);
+        let test = leaves.constants::<S>(ray);
+        let (near, far) = (S::splat(self.window.near), S::splat(self.window.far));
+        let stack = &mut self.stack;
         loop {
-            match stack.pop() {
-                Some(entry) if entry.distance() <= window.far => {
-                    current = entry.child();
-                    break;
+            let mut current = loop {
+                let entry = stack.pop()?;
+                if entry.distance() <= self.window.far {
+                    break entry.child();
                 }
-                Some(_) => {}
-                None => return,
+            };
+            while !current.is_leaf() {
+                counter.node();
+                let node = &nodes[current.index()];
+                let (mask, enter) = boxes.test(node, near, far);
+                let announce = |entry: Entry| match entry.child() {
+                    leaf if leaf.is_leaf() => leaves.announce(leaf),
+                    child => prefetch(nodes, child.index()),
+                };
+                match nearest_child::<S, ANY, W>(node, mask, enter, stack, announce) {
+                    Some(child) => current = child,
+                    None => break,
+                }
+            }
+            if current.is_leaf() {
+                counter.leaf();
+                let lanes = leaves.test(&test, current, &self.window);
+                if lanes != 0 {
+                    return Some(Stop {
+                        leaf: current,
+                        lanes,
+                    });
+                }
             }
         }
     }

@@ -3,12 +3,12 @@
 use super::build::{Builder, build};
 use super::caster::{Caster, Window};
 use super::count::{Counter, Silent, TraversalCounts};
-use super::hit::{Accept, Every, Hit, Search};
+use super::hit::{Hit, Search, key};
 use super::layout::{Block, ChildRef, Node, Tree};
-use super::simd::{Job, Lanes, Level};
+use super::simd::{Job, Lanes, Level, Run, prefetch};
 use super::stats::TreeStats;
-use super::leaf::Leaves;
-use super::traverse::{Visitor, walk};
+use super::filter::Filter;
+use super::traverse::{Leaves, Stop, Walk};
 use crate::math::{Aabb, Ray, Vec3};
 
 /// Which vectors a tree is laid out for and traced with. Hits are the same with all.
@@ -101,7 +101,7 @@ impl Bvh {
     /// The first hit along `ray` in `t_min < t < t_max`; among several at the same `t` the
     /// lowest triangle. `None` where there is none.
     pub fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
-        self.search::<false, _>(ray, &Every, &mut Silent)
+        self.closest_hit_if(ray, |_| true)
     }
 
     /// The first hit that `accept` does not turn down.
@@ -113,7 +113,7 @@ impl Bvh {
 
     /// Whether anything is hit in `t_min < t < t_max`.
     pub fn any_hit(&self, ray: &Ray) -> bool {
-        self.search::<true, _>(ray, &Every, &mut Silent).is_some()
+        self.any_hit_if(ray, |_| true)
     }
 
     /// Whether there is a hit that `accept` does not turn down.
@@ -123,12 +123,12 @@ impl Bvh {
 
     /// [`Bvh::closest_hit`], adding to `counts` what it looked at.
     pub fn closest_hit_counted(&self, ray: &Ray, counts: &mut TraversalCounts) -> Option<Hit> {
-        self.search::<false, _>(ray, &Every, counts)
+        self.search::<false, _>(ray, &|_: &Hit| true, counts)
     }
 
     /// [`Bvh::any_hit`], adding to `counts` what it looked at.
     pub fn any_hit_counted(&self, ray: &Ray, counts: &mut TraversalCounts) -> bool {
-        self.search::<true, _>(ray, &Every, counts)
+        self.search::<true, _>(ray, &|_: &Hit| true, counts)
             .is_some()
     }
 
@@ -163,7 +163,7 @@ impl Bvh {
     fn search<const ANY: bool, C: Counter>(
         &self,
         ray: &Ray,
-        accept: &impl Accept,
+        accept: &impl Fn(&Hit) -> bool,
         counter: &mut C,
     ) -> Option<Hit> {
         let mut search = Search::new(ray.t_min, ray.t_max);
@@ -177,98 +177,146 @@ impl Bvh {
         ray: &Ray,
         search: &mut Search,
         instance: u32,
-        accept: &impl Accept,
+        accept: &impl Fn(&Hit) -> bool,
         counter: &mut C,
     ) {
         match &self.body {
-            Body::Eight(tree) => self.level.run8(Cast::<ANY, 8, _, _> {
+            Body::Eight(tree) => {
+                self.cast_in::<ANY, 8, _>(tree, ray, search, instance, accept, counter);
+            }
+            Body::Sixteen(tree) => {
+                self.cast_in::<ANY, 16, _>(tree, ray, search, instance, accept, counter);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn cast_in<const ANY: bool, const W: usize, C: Counter>(
+        &self,
+        tree: &Tree<W>,
+        ray: &Ray,
+        search: &mut Search,
+        instance: u32,
+        accept: &impl Fn(&Hit) -> bool,
+        counter: &mut C,
+    ) where
+        Level: Run<W>,
+    {
+        let Some(ray) = &Caster::new(ray, &tree.bounds, self.reach, 0.0) else {
+            return;
+        };
+        let mut seek = |root: ChildRef| {
+            let mut walk = Walk::new(root, ray.window(search.t_min, search.t_best));
+            while let Some(stop) = self.level.run(Step::<ANY, W, C> {
                 tree,
-                reach: self.reach,
                 ray,
-                search,
-                instance,
-                accept,
+                walk: &mut walk,
                 counter,
-            }),
-            Body::Sixteen(tree) => self.level.run16(Cast::<ANY, 16, _, _> {
-                tree,
-                reach: self.reach,
-                ray,
-                search,
-                instance,
-                accept,
-                counter,
-            }),
+            }) {
+                let block = &tree.blocks[stop.leaf.index()];
+                if search_lanes::<ANY, W>(block, stop.lanes, ray, search, instance, accept, counter)
+                {
+                    return true;
+                }
+                walk.window = ray.window(search.t_min, search.t_best);
+            }
+            false
+        };
+        if !tree.nodes.is_empty() {
+            seek(ChildRef::node(0));
+            return;
+        }
+        // All blocks in turn.
+        for (block, first) in (0..tree.triangles).step_by(W).enumerate() {
+            if seek(ChildRef::leaf(block, W.min(tree.triangles - first))) {
+                return;
+            }
         }
     }
 }
 
-/// A search in one tree, to be compiled for each kind of vectors.
-struct Cast<'a, const ANY: bool, const W: usize, A, C> {
-    tree: &'a Tree<W>,
-    reach: f32,
-    ray: &'a Ray,
-    search: &'a mut Search,
+/// Looks at those triangles of a block for hits that are better than the best.
+///
+/// With `ANY` the first hit that `accept` likes ends the search: then it returns `true`.
+#[inline(always)]
+fn search_lanes<const ANY: bool, const W: usize>(
+    block: &Block<W>,
+    mut lanes: u32,
+    ray: &Caster,
+    search: &mut Search,
     instance: u32,
-    accept: &'a A,
+    accept: &impl Fn(&Hit) -> bool,
+    counter: &mut impl Counter,
+) -> bool {
+    while lanes != 0 {
+        let lane = lanes.trailing_zeros() as usize % W;
+        lanes &= lanes - 1;
+        counter.triangle();
+        let Some(crossing) = ray.exact().cross(&block.corners_of(lane, ray.axes)) else {
+            continue;
+        };
+        let triangle = block.triangles[lane];
+        if !search.is_better(crossing.t, key(instance, triangle)) {
+            continue;
+        }
+        let hit = Hit {
+            t: crossing.t,
+            u: crossing.u,
+            v: crossing.v,
+            triangle,
+            instance,
+        };
+        if accept(&hit) {
+            search.keep(hit);
+            if ANY {
+                return true;
+            }
+        }
+    }
+    false
+}
+
+/// A walk to the next block that needs the exact test, to be compiled for each kind of vectors.
+struct Step<'a, const ANY: bool, const W: usize, C> {
+    tree: &'a Tree<W>,
+    ray: &'a Caster,
+    walk: &'a mut Walk,
     counter: &'a mut C,
 }
 
-impl<const ANY: bool, const W: usize, A, C> Job<W> for Cast<'_, ANY, W, A, C>
-where
-    A: Accept,
-    C: Counter,
-{
-    type Output = ();
+impl<const ANY: bool, const W: usize, C: Counter> Job<W> for Step<'_, ANY, W, C> {
+    type Output = Option<Stop>;
 
     #[inline(always)]
-    fn run<S: Lanes<W>>(self) {
+    fn run<S: Lanes<W>>(self) -> Option<Stop> {
         let Self {
             tree,
-            reach,
             ray,
-            search,
-            instance,
-            accept,
+            walk,
             counter,
         } = self;
-        // In here, so that its arithmetic, too, is compiled for the instruction set.
-        let Some(ray) = &Caster::new(ray, &tree.bounds, reach, 0.0) else {
-            return;
-        };
-        let window = ray.window(search.t_min, search.t_best);
-        let mut leaves = Leaves::<ANY, W, S, A>::new(&tree.blocks, ray, search, instance, accept);
-        visit_all(tree, ray, window, &mut leaves, counter);
-        if !leaves.finish(counter) {
-            let mut leaves = leaves.without_delay();
-            visit_all(tree, ray, window, &mut leaves, counter);
-        }
+        walk.next::<S, ANY, W, _>(&tree.nodes, ray, &Blocks(&tree.blocks), counter)
     }
 }
 
-/// Has `leaves` visit all that may matter.
-#[inline(always)]
-fn visit_all<const ANY: bool, const W: usize, S, A, C>(
-    tree: &Tree<W>,
-    ray: &Caster,
-    mut window: Window,
-    leaves: &mut Leaves<'_, ANY, W, S, A>,
-    counter: &mut C,
-) where
-    S: Lanes<W>,
-    A: Accept,
-    C: Counter,
-{
-    if !tree.nodes.is_empty() {
-        walk::<S, ANY, W, C>(&tree.nodes, ray, window, counter, leaves);
-        return;
+/// The leaves of a tree over triangles.
+struct Blocks<'a, const W: usize>(&'a [Block<W>]);
+
+impl<const W: usize> Leaves<W> for Blocks<'_, W> {
+    type Test<S> = Filter<S>;
+
+    #[inline(always)]
+    fn constants<S: Lanes<W>>(&self, ray: &Caster) -> Filter<S> {
+        Filter::new(ray)
     }
-    let mut left = tree.triangles;
-    for block in 0..tree.blocks.len() {
-        let child = ChildRef::leaf(block, left.min(W));
-        left -= left.min(W);
-        if leaves.visit(child, &mut window, counter) {
-            return;
-        }
+
+    #[inline(always)]
+    fn test<S: Lanes<W>>(&self, filter: &Filter<S>, leaf: ChildRef, window: &Window) -> u32 {
+        filter.test(&self.0[leaf.index()], leaf.count(), window)
+    }
+
+    #[inline(always)]
+    fn announce(&self, leaf: ChildRef) {
+        prefetch(self.0, leaf.index());
     }
 }

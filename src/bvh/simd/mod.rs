@@ -13,7 +13,7 @@ mod x86;
 
 pub(super) use portable::Portable;
 pub(super) use prefetch::prefetch;
-pub(super) use stack::{Entry, Stack, StackSpace};
+pub(super) use stack::{Entry, Stack};
 
 /// A vector of `W` floats.
 ///
@@ -99,10 +99,17 @@ impl Level {
     pub fn best() -> Self {
         Self::avx512().or(Self::avx2()).unwrap_or(Self::PORTABLE)
     }
+}
 
-    /// Runs `job` on vectors of 8.
+/// Runs jobs on vectors of `W`.
+pub(super) trait Run<const W: usize> {
+    /// Runs `job`.
+    fn run<J: Job<W>>(self, job: J) -> J::Output;
+}
+
+impl Run<8> for Level {
     #[inline(always)]
-    pub fn run8<J: Job<8>>(self, job: J) -> J::Output {
+    fn run<J: Job<8>>(self, job: J) -> J::Output {
         match self.0 {
             Set::Portable => job.run::<Portable<8>>(),
             // SAFETY: a `Level` with this set exists only where the processor has AVX2 and FMA
@@ -111,10 +118,11 @@ impl Level {
             Set::Avx2 | Set::Avx512 => unsafe { x86::run_avx2(job) },
         }
     }
+}
 
-    /// Runs `job` on vectors of 16.
+impl Run<16> for Level {
     #[inline(always)]
-    pub fn run16<J: Job<16>>(self, job: J) -> J::Output {
+    fn run<J: Job<16>>(self, job: J) -> J::Output {
         match self.0 {
             // SAFETY: a `Level` with this set exists only where the processor has AVX-512.
             #[cfg(target_arch = "x86_64")]

@@ -34,34 +34,20 @@ impl Entry {
     }
 }
 
-/// Memory for a [`Stack`].
-///
-/// Clearing its kilobytes would cost as much as several node visits, so they are left as
-/// they are and only what was pushed is read.
-pub(in crate::bvh) struct StackSpace([MaybeUninit<Entry>; CAPACITY]);
-
-impl StackSpace {
-    /// Uninitialised.
-    #[inline(always)]
-    pub fn new() -> Self {
-        Self([const { MaybeUninit::uninit() }; CAPACITY])
-    }
-}
-
 /// Children still to be visited, nearest last.
-///
-/// The entries are elsewhere so that the compiler keeps the length in a register.
-pub(in crate::bvh) struct Stack<'a> {
-    entries: &'a mut [MaybeUninit<Entry>; CAPACITY],
+pub(in crate::bvh) struct Stack {
+    /// Clearing these kilobytes would cost as much as several node visits, so they are left as
+    /// they are and only what was pushed is read.
+    entries: [MaybeUninit<Entry>; CAPACITY],
     length: usize,
 }
 
-impl<'a> Stack<'a> {
+impl Stack {
     /// Empty.
     #[inline(always)]
-    pub fn new(space: &'a mut StackSpace) -> Self {
+    pub fn new() -> Self {
         Self {
-            entries: &mut space.0,
+            entries: [const { MaybeUninit::uninit() }; CAPACITY],
             length: 0,
         }
     }
