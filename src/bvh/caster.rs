@@ -51,8 +51,8 @@ const ORDINARY_COORDINATE: f32 = (1u64 << 50) as f32;
 pub(super) struct Caster {
     /// Second, third and main axis: the main one is that of the largest direction component.
     pub axes: [usize; 3],
-    /// Whether the ray runs towards lower coordinates, by axis: index of the near planes.
-    pub near_side: [usize; 3],
+    /// Whether the ray runs towards lower coordinates, by axis.
+    pub towards_lower: [bool; 3],
     /// Reciprocal direction, by axis, for near planes.
     pub near_inverse: [f32; 3],
     /// Reciprocal direction, by axis, for far planes.
@@ -126,7 +126,7 @@ impl Caster {
         let main_inverse = 1.0 / turned_direction[2];
         Some(Self {
             axes,
-            near_side: per_axis(|k| (direction[k].to_bits() >> 31) as usize),
+            towards_lower: per_axis(|k| direction[k].is_sign_negative()),
             near_inverse,
             far_inverse,
             near_offset: per_axis(|k| near[k] + (PRODUCT_PAD * near[k].abs() + pad[k])),
@@ -145,22 +145,31 @@ impl Caster {
     #[inline(always)]
     pub fn window(&self, t_min: f32, t_max: f32) -> Window {
         let least = t_min * (1.0 - RANGE_PAD);
-        let most = t_max * (1.0 + RANGE_PAD);
-        let (a, b) = (least * self.direction[2], most * self.direction[2]);
-        let (near, far) = if self.to_distance == 1.0 {
-            (least, most)
-        } else {
-            self.distances(least, most)
+        let start = least * self.direction[2] - TINY.copysign(self.direction[2]);
+        let mut window = Window {
+            near: self.distance(least) - TINY,
+            far: 0.0,
+            depth: [start; 2],
         };
-        let towards_higher = self.direction[2] > 0.0;
-        Window {
-            near: near - TINY,
-            far: far + TINY,
-            depth: if towards_higher {
-                [a - TINY, b + TINY]
-            } else {
-                [b - TINY, a + TINY]
-            },
+        self.narrow(&mut window, t_max);
+        window
+    }
+
+    /// Makes `window` end at `t_max`.
+    #[inline(always)]
+    pub fn narrow(&self, window: &mut Window, t_max: f32) {
+        let most = t_max * (1.0 + RANGE_PAD);
+        let main = self.direction[2];
+        window.far = self.distance(most) + TINY;
+        window.depth[usize::from(main > 0.0)] = most * main + TINY.copysign(main);
+    }
+
+    #[inline(always)]
+    fn distance(&self, t: f32) -> f32 {
+        if self.to_distance == 1.0 {
+            t
+        } else {
+            (f64::from(t) * self.to_distance) as f32
         }
     }
 
@@ -168,12 +177,6 @@ impl Caster {
     #[inline(always)]
     pub fn exact(&self) -> ExactRay {
         ExactRay::new(self.origin, self.direction)
-    }
-
-    #[cold]
-    fn distances(&self, least: f32, most: f32) -> (f32, f32) {
-        let distance = |t: f32| (f64::from(t) * self.to_distance) as f32;
-        (distance(least), distance(most))
     }
 }
 

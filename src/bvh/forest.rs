@@ -208,7 +208,7 @@ impl Forest {
             if ANY && search.hit.is_some() {
                 break;
             }
-            walk.window = caster.window(search.t_min, search.t_best);
+            caster.narrow(&mut walk.window, search.t_best);
         }
         search.hit
     }

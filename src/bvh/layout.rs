@@ -81,8 +81,9 @@ impl ChildRef {
 #[derive(Clone, Debug, PartialEq)]
 #[repr(C, align(64))]
 pub(super) struct Node<const W: usize> {
-    /// Lower, then upper planes; by axis; by child. Absent children have empty boxes.
-    pub planes: [[[f32; W]; 3]; 2],
+    /// Lower planes by axis, then upper planes by axis; by child. Absent children have empty
+    /// boxes.
+    pub planes: [[f32; W]; 6],
     /// The children.
     pub children: [ChildRef; W],
 }
@@ -90,15 +91,22 @@ pub(super) struct Node<const W: usize> {
 impl<const W: usize> Node<W> {
     /// Without children.
     pub const EMPTY: Self = Self {
-        planes: [[[f32::INFINITY; W]; 3], [[f32::NEG_INFINITY; W]; 3]],
+        planes: [
+            [f32::INFINITY; W],
+            [f32::INFINITY; W],
+            [f32::INFINITY; W],
+            [f32::NEG_INFINITY; W],
+            [f32::NEG_INFINITY; W],
+            [f32::NEG_INFINITY; W],
+        ],
         children: [ChildRef::NONE; W],
     };
 
     /// Sets the child in `lane`.
     pub fn set(&mut self, lane: usize, bounds: &Aabb, child: ChildRef) {
         for axis in 0..3 {
-            self.planes[0][axis][lane] = bounds.min[axis];
-            self.planes[1][axis][lane] = bounds.max[axis];
+            self.planes[axis][lane] = bounds.min[axis];
+            self.planes[3 + axis][lane] = bounds.max[axis];
         }
         self.children[lane] = child;
     }
@@ -108,10 +116,10 @@ impl<const W: usize> Node<W> {
         (0..W)
             .filter(|&lane| self.children[lane] != ChildRef::NONE)
             .map(|lane| {
-                let corner = |side: usize| self.planes[side].map(|planes| planes[lane]).into();
+                let plane = |row: usize| self.planes[row][lane];
                 let bounds = Aabb {
-                    min: corner(0),
-                    max: corner(1),
+                    min: [plane(0), plane(1), plane(2)].into(),
+                    max: [plane(3), plane(4), plane(5)].into(),
                 };
                 (bounds, self.children[lane])
             })

@@ -15,7 +15,8 @@ struct BoxTest<S> {
 
 /// Those for one axis.
 struct AxisTest<S> {
-    near_side: usize,
+    near_row: usize,
+    far_row: usize,
     near_inverse: S,
     far_inverse: S,
     /// What is subtracted from a near plane times `near_inverse`.
@@ -31,7 +32,8 @@ impl<S> AxisTest<S> {
         S: Lanes<W>,
     {
         Self {
-            near_side: ray.near_side[axis],
+            near_row: axis + 3 * usize::from(ray.towards_lower[axis]),
+            far_row: axis + 3 * usize::from(!ray.towards_lower[axis]),
             near_inverse: S::splat(ray.near_inverse[axis]),
             far_inverse: S::splat(ray.far_inverse[axis]),
             near_offset: S::splat(ray.near_offset[axis]),
@@ -40,20 +42,20 @@ impl<S> AxisTest<S> {
     }
 
     #[inline(always)]
-    fn enter<const W: usize>(&self, node: &Node<W>, axis: usize) -> S
+    fn enter<const W: usize>(&self, node: &Node<W>) -> S
     where
         S: Lanes<W>,
     {
-        let plane = S::load(&node.planes[self.near_side][axis]);
+        let plane = S::load(&node.planes[self.near_row]);
         plane.mul_sub(self.near_inverse, self.near_offset)
     }
 
     #[inline(always)]
-    fn leave<const W: usize>(&self, node: &Node<W>, axis: usize) -> S
+    fn leave<const W: usize>(&self, node: &Node<W>) -> S
     where
         S: Lanes<W>,
     {
-        let plane = S::load(&node.planes[1 - self.near_side][axis]);
+        let plane = S::load(&node.planes[self.far_row]);
         plane.mul_sub(self.far_inverse, self.far_offset)
     }
 }
@@ -81,10 +83,10 @@ impl<S> BoxTest<S> {
     {
         let [x, y, z] = &self.axes;
         // In pairs: the next step of the walk waits for the result.
-        let enter = x.enter(node, 0).max(y.enter(node, 1));
-        let enter = enter.max(z.enter(node, 2).max(near));
-        let leave = x.leave(node, 0).min(y.leave(node, 1));
-        let leave = leave.min(z.leave(node, 2).min(far));
+        let enter = x.enter(node).max(y.enter(node));
+        let enter = enter.max(z.enter(node).max(near));
+        let leave = x.leave(node).min(y.leave(node));
+        let leave = leave.min(z.leave(node).min(far));
         (enter.le(leave), enter)
     }
 }

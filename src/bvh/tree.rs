@@ -218,7 +218,7 @@ impl Bvh {
                 {
                     return true;
                 }
-                walk.window = ray.window(search.t_min, search.t_best);
+                ray.narrow(&mut walk.window, search.t_best);
             }
             false
         };

@@ -60,23 +60,30 @@ impl ExactRay {
         let y = sub(self.from_origin(corners, 1), scale(z, self.shear[1]));
         let [reach, error] = reach_and_edge_error(x, y, z);
         let mut weights = edge_functions(x, y);
-        if (weights[0] + weights[1] + weights[2]).abs() < CANCELLED * error {
+        let mut area = sum(weights);
+        if area.abs() < CANCELLED * error {
             weights = edge_functions_compensated(x, y);
+            area = sum(weights);
         }
-        let area = weights[0] + weights[1] + weights[2];
-        let turn = area.signum();
-        let [u, v, w, _] = scale(weights, turn);
         // Written so that a NaN is a miss.
-        if !(area.abs() > error && u >= -error && v >= -error && w >= -error) {
+        let turn = area.signum();
+        let least = lesser(
+            lesser(turn * weights[0], turn * weights[1]),
+            turn * weights[2],
+        );
+        if !(area.abs() > error && least >= -error) {
             return None;
         }
-        let (u, v, w) = (larger(u, 0.0), larger(v, 0.0), larger(w, 0.0));
-        let area = u + v + w;
-        let mut depth = u * z[0] + v * z[1] + w * z[2];
-        if depth.abs() <= 8.0 * f64::EPSILON * reach * area {
+        if least < 0.0 {
+            weights = clamped(weights, turn);
+            area = sum(weights);
+        }
+        let mut depth = sum(mul(weights, z));
+        if depth.abs() <= 8.0 * f64::EPSILON * reach * area.abs() {
             depth = 0.0; // the ray starts in the plane, as far as can be told
         }
-        let [t, u, v, _] = divide([depth, v, w, 0.0], [area * self.direction[2], area, area, 1.0]);
+        let numerators = [depth, weights[1], weights[2], 0.0];
+        let [t, u, v, _] = divide(numerators, [area * self.direction[2], area, area, 1.0]);
         let crossing = Crossing {
             t: t as f32,
             u: u as f32,
@@ -140,6 +147,24 @@ fn divide(a: Four, b: Four) -> Four {
 #[inline(always)]
 fn scale(a: Four, factor: f64) -> Four {
     mul(a, [factor; 4])
+}
+
+/// Of the three.
+#[inline(always)]
+fn sum(a: Four) -> f64 {
+    a[0] + a[1] + a[2]
+}
+
+/// Weights whose sign is not `turn` become zero: those of a ray just outside of an edge.
+#[cold]
+fn clamped(weights: Four, turn: f64) -> Four {
+    weights.map(|w| if turn * w > 0.0 { w } else { 0.0 })
+}
+
+/// `f64::min` where there is no NaN, in a single instruction.
+#[inline(always)]
+fn lesser(x: f64, y: f64) -> f64 {
+    if x < y { x } else { y }
 }
 
 /// `f64::max` where there is no NaN, in a single instruction.
