@@ -1,6 +1,7 @@
 //! What a tree looks like in memory: wide nodes and blocks of triangles, each a few whole
 //! cache lines, coordinates apart (structure of arrays).
 
+use super::simd::prefer_large_pages;
 use crate::math::Aabb;
 
 /// The largest number of levels of nodes that a builder makes.
@@ -178,4 +179,12 @@ pub(super) struct Tree<const W: usize> {
     pub blocks: Vec<Block<W>>,
     /// Triangles in the blocks.
     pub triangles: usize,
+}
+
+impl<const W: usize> Tree<W> {
+    /// See [`prefer_large_pages`].
+    pub fn prefer_large_pages(&self) {
+        prefer_large_pages(&self.nodes);
+        prefer_large_pages(&self.blocks);
+    }
 }

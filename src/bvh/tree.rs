@@ -93,6 +93,10 @@ impl Bvh {
             level,
             reach: 0.0,
         };
+        match &bvh.body {
+            Body::Eight(tree) => tree.prefer_large_pages(),
+            Body::Sixteen(tree) => tree.prefer_large_pages(),
+        }
         let bounds = bvh.bounds();
         bvh.reach = bounds.min.abs().max(bounds.max.abs()).max_element();
         bvh

@@ -5,12 +5,14 @@
 
 #![allow(unsafe_code)]
 
+mod large_pages;
 mod portable;
 mod prefetch;
 mod stack;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
+pub(super) use large_pages::prefer_large_pages;
 pub(super) use portable::Portable;
 pub(super) use prefetch::prefetch;
 pub(super) use stack::{Entry, Stack};
