@@ -118,18 +118,26 @@ fn page([a, b]: [&Picture; 2], pair: &Pair, maps: &Maps, report: &Report) -> io:
     let body = format!(
         "<p>{}×{} pixels. Both pictures are shown clipped to [0, 1], without a tone map.</p>\n\
          {}\n<h2>Figures</h2>\n{}\n<h2>Where they differ</h2>\n\
-         <p>Pixels that are not finite in one of the pictures are cyan.</p>\n\
-         <div class=\"maps\">\n{figures}</div>\n{}",
+         {}<div class=\"maps\">\n{figures}</div>\n{}",
         report.size.x,
         report.size.y,
         slider(&left, &right),
         figures_table(report),
+        cyan_note(report),
         worst_table(report)
     );
     Ok(document(
         &format!("{} against {}", report.a, report.b),
         &body,
     ))
+}
+
+fn cyan_note(report: &Report) -> &'static str {
+    if report.figures.non_finite == [0, 0] {
+        ""
+    } else {
+        "<p>Pixels that are not finite in one of the pictures are cyan.</p>\n"
+    }
 }
 
 fn figures_table(report: &Report) -> String {

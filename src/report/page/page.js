@@ -10,8 +10,6 @@ for (const slider of document.querySelectorAll(".slider")) {
     input.value = (100 * (event.clientX - box.left)) / box.width;
     show();
   };
-  const image = pictures.querySelector(".left img");
-  new ResizeObserver(() => pictures.style.setProperty("--height", image.clientHeight + "px")).observe(image);
   input.addEventListener("input", show);
   pictures.addEventListener("pointerdown", (event) => {
     event.preventDefault();
