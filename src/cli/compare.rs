@@ -23,10 +23,11 @@ Examples:
   halfshade compare quick.png reference.png -o difference.png -o difference.html
   halfshade compare quick.exr reference.exr --json --fail-above relmse=1e-4
 
-PNG is decoded from sRGB; of EXR the channels R, G, B are compared. Pixels that are not finite in one of
-the pictures are counted and left out of all figures.
+PNG is decoded from sRGB; of EXR the channels R, G, B are compared. Pixels that
+are not finite in one of the pictures are counted and left out of all figures.
 
-Exit status: 0 done and within the limits, 1 a limit is passed or the job failed, 2 the arguments are wrong.")]
+Exit status: 0 done and within the limits, 1 a limit is passed or the job failed,
+2 the arguments are wrong.")]
 pub struct CompareOptions {
     /// The picture that is measured (.png, .exr)
     a: PathBuf,
@@ -50,8 +51,6 @@ pub struct CompareOptions {
     /// Print JSON
     #[arg(long)]
     json: bool,
-    #[command(flatten)]
-    console: Console,
 }
 
 /// Does what the options say.
@@ -65,8 +64,7 @@ pub fn run(options: &CompareOptions) -> Result<(), Failure> {
         .iter()
         .try_for_each(|path| check_writable(path))?;
 
-    let pictures = inputs.map(|path| open(path, options.console));
-    let [a, b] = pictures;
+    let [a, b] = inputs.map(open);
     let (a, b) = (a?, b?);
     let pair = Pair::new(&a, &b).map_err(|error| {
         let [a, b] = inputs.map(Path::display);
@@ -96,10 +94,10 @@ pub fn run(options: &CompareOptions) -> Result<(), Failure> {
     check_limits(options, &report.figures)
 }
 
-fn open(path: &Path, console: Console) -> Result<Picture, Failure> {
+fn open(path: &Path) -> Result<Picture, Failure> {
     let opened = read_picture(path).map_err(Failure::job)?;
     if opened.has_other_primaries {
-        console.warn(format_args!(
+        Console::default().warn(format_args!(
             "{}: the primaries are not those of Rec. 709; its numbers are compared as they are",
             path.display()
         ));

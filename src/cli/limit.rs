@@ -59,6 +59,7 @@ fn parsed(text: &str, grows_with_likeness: bool) -> Result<Limit, String> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 

@@ -17,11 +17,7 @@ pub fn color_bar(scale: Scale) -> String {
         .map(|i| {
             let x = SIDE + i as f32 * width;
             let fill = hex(color((i as f32 + 0.5) / STEPS as f32));
-            // Wider by half a step, so that no seam shows.
-            format!(
-                "<rect x=\"{x}\" y=\"2\" width=\"{}\" height=\"16\" fill=\"{fill}\"/>",
-                1.5 * width
-            )
+            format!("<rect x=\"{x}\" y=\"2\" width=\"{width}\" height=\"16\" fill=\"{fill}\"/>")
         })
         .collect();
     let ticks: String = scale
@@ -36,7 +32,7 @@ pub fn color_bar(scale: Scale) -> String {
         .collect();
     format!(
         "<svg class=\"bar\" viewBox=\"0 0 {} 46\" role=\"img\" aria-label=\"colour bar\">\n\
-         {steps}\n{ticks}</svg>\n",
+         <g shape-rendering=\"crispEdges\">{steps}</g>\n{ticks}</svg>\n",
         LENGTH + 2.0 * SIDE
     )
 }
