@@ -35,6 +35,7 @@
 //! | [`integrate`] | a ray | the radiance that comes back along it |
 //! | [`render`] | a prepared scene, a camera, settings | a film |
 //! | [`output`] | pixels | files |
+//! | [`report`] | two pictures | how far they are apart, as figures, error maps and pages |
 //!
 //! The program (`main.rs` and `cli/`) is thin: it parses arguments, runs one command, prints, and turns errors
 //! into exit statuses. The library never prints.
@@ -97,6 +98,8 @@ pub mod integrate;
 pub mod render;
 
 pub mod output;
+
+pub mod report;
 
 /// Compiles and runs the example of the README.
 #[cfg(doctest)]

@@ -4,11 +4,15 @@
 //! job failed, 2 the arguments are wrong.
 
 mod arguments;
+mod compare;
+mod comparison;
 mod console;
+mod difference;
 mod failure;
 mod info;
 mod interrupt;
 mod layers;
+mod limit;
 mod memory;
 mod metadata;
 mod names;
@@ -41,6 +45,7 @@ pub struct Arguments {
 enum Command {
     Render(Box<options::RenderOptions>),
     Info(info::InfoOptions),
+    Compare(compare::CompareOptions),
 }
 
 /// Does what the arguments say.
@@ -48,5 +53,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.command {
         Command::Render(arguments) => render::run(arguments),
         Command::Info(arguments) => info::run(arguments),
+        Command::Compare(arguments) => compare::run(arguments),
     }
 }

@@ -24,7 +24,7 @@ impl Targets {
         check_combination(output, &images).map_err(usage)?;
         check_stats_name(output.stats.as_deref()).map_err(usage)?;
         let outputs = images.iter().map(|(path, _)| path).chain(&output.stats);
-        check_distinct(&options.scene.scene, outputs).map_err(usage)?;
+        check_distinct(&[&options.scene.scene], "the scene", outputs).map_err(usage)?;
         for path in images.iter().map(|(path, _)| path).chain(&output.stats) {
             check_writable(path)?;
         }
@@ -95,17 +95,18 @@ fn check_stats_name(stats: Option<&Path>) -> Result<(), String> {
     }
 }
 
-/// No output may replace the scene or another output, under whatever name.
-fn check_distinct<'a>(
-    scene: &'a Path,
+/// No output may replace an input, which is called `what`, or another output, under whatever name.
+pub fn check_distinct<'a>(
+    inputs: &[&Path],
+    what: &str,
     outputs: impl Iterator<Item = &'a PathBuf>,
 ) -> Result<(), String> {
-    let scene = resolved(scene);
+    let inputs: Vec<PathBuf> = inputs.iter().map(|path| resolved(path)).collect();
     let mut known: Vec<PathBuf> = Vec::new();
     for path in outputs {
         let (name, path) = (path.display(), resolved(path));
-        if path == scene {
-            return Err(format!("{name}: is the scene, and would be overwritten"));
+        if inputs.contains(&path) {
+            return Err(format!("{name}: is {what}, and would be overwritten"));
         }
         if known.contains(&path) {
             return Err(format!("{name}: given twice"));

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use halfshade::scene::Settings;
 
-use super::{OBJ, folder, run, stderr, stdout};
+use super::{OBJ, folder, render, run, stderr, stdout};
 
 #[test]
 fn help_explains_with_an_example() {
@@ -14,6 +14,7 @@ fn help_explains_with_an_example() {
         (&["-h"][..], "render"),
         (&["render", "-h"], "--light-samples"),
         (&["info", "-h"], "--json"),
+        (&["compare", "-h"], "--fail-above"),
     ] {
         for help in ["-h", "--help"] {
             let arguments = [&arguments[..arguments.len() - 1], &[help]].concat();
@@ -34,7 +35,12 @@ fn help_explains_with_an_example() {
 /// The commands that `-h` shows, without the remarks behind them.
 fn examples(folder: &Path) -> Vec<Vec<String>> {
     let mut examples = Vec::new();
-    for command in [&["-h"][..], &["render", "-h"], &["info", "-h"]] {
+    for command in [
+        &["-h"][..],
+        &["render", "-h"],
+        &["info", "-h"],
+        &["compare", "-h"],
+    ] {
         let output = run(folder, command);
         let lines = stdout(&output).lines();
         let commands = lines.filter_map(|line| line.trim().strip_prefix("halfshade "));
@@ -74,8 +80,16 @@ fn the_examples_of_the_help_work() {
         fs::create_dir_all(copy.parent().unwrap()).unwrap();
         fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join(file), copy).unwrap();
     }
+    // Equal pictures are within every limit.
+    for name in ["quick", "reference"] {
+        for extension in ["png", "exr"] {
+            let file = format!("{name}.{extension}");
+            let output = render(path, &["-o", &file]);
+            assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        }
+    }
     let examples = examples(path);
-    assert!(examples.len() >= 6, "{examples:?}");
+    assert!(examples.len() >= 9, "{examples:?}");
     for example in &examples {
         let output = run(path, &made_small(example));
         assert_eq!(
@@ -85,7 +99,14 @@ fn the_examples_of_the_help_work() {
             stderr(&output)
         );
     }
-    for picture in ["house.png", "bunny.png", "bunny.exr", "part.exr"] {
+    for picture in [
+        "house.png",
+        "bunny.png",
+        "bunny.exr",
+        "part.exr",
+        "difference.png",
+        "difference.html",
+    ] {
         assert!(path.join(picture).is_file(), "{picture}");
     }
 }

@@ -145,6 +145,7 @@ use std::path::Path;
 use super::{ImportError, Imported};
 pub use defaults::Defaults;
 use document::{Entry, Kind, Node, Source};
+pub use nearest::suggestion;
 
 /// How to import a scene.
 #[derive(Clone, Debug, Default)]
