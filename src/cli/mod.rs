@@ -9,6 +9,7 @@ mod failure;
 mod info;
 mod interrupt;
 mod layers;
+mod limits;
 mod memory;
 mod metadata;
 mod names;
