@@ -9,7 +9,7 @@ use common::build::*;
 use halfshade::bvh::Builder;
 use halfshade::camera::Camera;
 use halfshade::color::Rgb;
-use halfshade::film::Rect;
+use halfshade::film::{Rect, StoppedBy};
 use halfshade::light::{DiskLight, Light};
 use halfshade::material::{Material, Phong, Surface};
 use halfshade::math::{UVec2, UnitVec3, Vec3};
@@ -238,7 +238,7 @@ fn a_cancelled_render_keeps_what_there_is() {
             cancel.store(true, std::sync::atomic::Ordering::Relaxed);
         }
     });
-    assert!(!film.is_complete);
+    assert_eq!(film.stopped_by, StoppedBy::Interrupt);
     let (least, _, most) = film.sample_counts();
     assert!(least >= 1 && most < 64, "{least} {most}");
 }

@@ -77,6 +77,14 @@ pub fn assignment(text: &str) -> Result<(String, String), String> {
     }
 }
 
+/// A number above 0.
+pub fn positive(text: &str) -> Result<f64, String> {
+    let number: Option<f64> = text.trim().parse().ok();
+    number
+        .filter(|number| *number > 0.0 && number.is_finite())
+        .ok_or_else(|| "not a number above 0".to_owned())
+}
+
 /// Stops of exposure.
 pub fn stops(text: &str) -> Result<f32, String> {
     let stops: Option<f32> = text.trim().parse().ok();
@@ -126,6 +134,14 @@ mod tests {
         let expected = ("a.b".to_owned(), "c = d".to_owned());
         assert_eq!(assignment("a.b = c = d"), Ok(expected));
         assert!(assignment("a.b").is_err() && assignment("=1").is_err());
+    }
+
+    #[test]
+    fn limits_are_above_zero() {
+        assert_eq!(positive("1e-3"), Ok(1e-3));
+        for wrong in ["0", "-1", "nan", "inf", "x"] {
+            assert!(positive(wrong).is_err(), "{wrong}");
+        }
     }
 
     #[test]

@@ -19,6 +19,12 @@ pub enum LayerKind {
     Variance,
     /// Number of each pixel's samples.
     Samples,
+    /// Each pixel's part of the estimated error.
+    Error,
+    /// The picture from one half of each pixel's samples.
+    HalfA,
+    /// The picture from the other half.
+    HalfB,
 }
 
 impl LayerKind {
@@ -29,6 +35,9 @@ impl LayerKind {
         Self::Depth,
         Self::Variance,
         Self::Samples,
+        Self::Error,
+        Self::HalfA,
+        Self::HalfB,
     ];
 
     /// As on the command line and in files.
@@ -39,6 +48,9 @@ impl LayerKind {
             Self::Depth => "depth",
             Self::Variance => "variance",
             Self::Samples => "samples",
+            Self::Error => "error",
+            Self::HalfA => "half_a",
+            Self::HalfB => "half_b",
         }
     }
 
@@ -48,7 +60,7 @@ impl LayerKind {
             Self::Albedo => Some(ViewKind::Albedo),
             Self::Normal => Some(ViewKind::Normal),
             Self::Depth => Some(ViewKind::Depth),
-            Self::Variance | Self::Samples => None,
+            Self::Variance | Self::Samples | Self::Error | Self::HalfA | Self::HalfB => None,
         }
     }
 }
@@ -95,6 +107,9 @@ impl LayerValues {
                     let counts = film.pixels.iter().map(|p| p.count() as f32);
                     Owned::Numbers("Y", counts.collect())
                 }
+                LayerKind::Error => Owned::Numbers("Y", film.errors()),
+                LayerKind::HalfA => Owned::Colors(film.half(0)),
+                LayerKind::HalfB => Owned::Colors(film.half(1)),
             };
             Some((kind, values))
         });

@@ -1,6 +1,6 @@
 //! What an EXR file says about how it was made.
 
-use halfshade::film::Rect;
+use halfshade::film::Film;
 use halfshade::scene::Settings;
 
 use super::options::RenderOptions;
@@ -9,8 +9,9 @@ use super::options::RenderOptions;
 pub fn metadata(
     options: &RenderOptions,
     settings: &Settings,
-    crop: Rect,
+    film: &Film,
 ) -> Vec<(&'static str, String)> {
+    let crop = film.rect;
     let sampling = &settings.sampling;
     let scene = &options.scene;
     // The name alone: a path says more about the user than about the picture.
@@ -24,7 +25,7 @@ pub fn metadata(
         ),
         ("integrator", settings.integrator.name().to_owned()),
         ("max_depth", settings.max_depth.to_string()),
-        ("samples", sampling.samples_per_pixel().to_string()),
+        ("samples", samples(film)),
         ("pattern", sampling.pattern.name().to_owned()),
         ("target", sampling.target.name().to_owned()),
         ("seed", sampling.seed.to_string()),
@@ -35,8 +36,19 @@ pub fn metadata(
     if let Some(camera) = &options.picture.camera {
         metadata.push(("camera", camera.clone()));
     }
+    if let Some(error) = film.error() {
+        metadata.push(("estimated_relative_rmse", error.estimate.to_string()));
+    }
     for (path, value) in &scene.set {
         metadata.push(("set", format!("{path}={value}")));
     }
     metadata
+}
+
+/// Samples of a pixel, and on average where they differ.
+fn samples(film: &Film) -> String {
+    match film.sample_counts() {
+        (min, _, max) if min == max => min.to_string(),
+        (min, mean, max) => format!("{min} to {max}, mean {mean}"),
+    }
 }

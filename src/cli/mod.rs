@@ -13,6 +13,7 @@ mod info;
 mod interrupt;
 mod layers;
 mod limit;
+mod limits;
 mod memory;
 mod metadata;
 mod names;

@@ -23,6 +23,10 @@ Examples:
       makes house.png
   halfshade render bunny.obj --size 640x480 --samples 16 -o bunny.png -o bunny.exr
       a model by itself gets a camera and lights, which are printed
+  halfshade render scenes/house.toml --error 0.02
+      as many samples as it takes, where they are needed
+  halfshade render scenes/house.toml --time 10
+      the best picture that ten seconds give
   halfshade render scenes/house.toml --set light.0.angle=0 --crop 100,50,64,64 -o part.exr
       a hard shadow of the sun
 
@@ -38,6 +42,8 @@ pub struct RenderOptions {
     pub picture: PictureOptions,
     #[command(flatten)]
     pub sampling: SamplingOptions,
+    #[command(flatten)]
+    pub limits: LimitOptions,
     #[command(flatten)]
     pub work: WorkOptions,
     #[command(flatten)]
@@ -84,7 +90,7 @@ pub struct PictureOptions {
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Sampling")]
 pub struct SamplingOptions {
-    /// Camera samples per pixel [default: the scene's, or 64]
+    /// Camera samples per pixel; with --time, --error or --adaptive at most, on average [default: the scene's, or 64; with --time or --error no limit]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES)))]
     pub samples: Option<u32>,
     /// Their layout [default: the scene's, or sobol]
@@ -99,6 +105,36 @@ pub struct SamplingOptions {
     /// Other seeds give other random numbers [default: the scene's, or 0]
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
+}
+
+/// When it ends, and where the samples go.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Limits")]
+pub struct LimitOptions {
+    /// Stop so that the picture is saved this many seconds after the start, as good as it is then
+    #[arg(long, value_name = "SECONDS", value_parser = arguments::positive)]
+    pub time: Option<f64>,
+    /// Stop when the estimated relative RMSE, the square root of relMSE, is no larger
+    #[arg(long, value_name = "R", value_parser = arguments::positive)]
+    pub error: Option<f64>,
+    /// Samples go where the error is [default: with --time or --error]
+    #[arg(long, conflicts_with = "no_adaptive")]
+    pub adaptive: bool,
+    /// Every pixel gets the same number of samples [default: without --time and --error]
+    #[arg(long)]
+    pub no_adaptive: bool,
+}
+
+impl LimitOptions {
+    /// Whether something else than a number of samples ends the render.
+    pub fn are_open(&self) -> bool {
+        self.time.is_some() || self.error.is_some()
+    }
+
+    /// Whether samples go where the error is.
+    pub fn is_adaptive(&self) -> bool {
+        self.adaptive || (self.are_open() && !self.no_adaptive)
+    }
 }
 
 /// How the work is done; the picture does not depend on it.

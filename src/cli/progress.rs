@@ -30,6 +30,11 @@ impl RenderProgress {
         self.bar.set_position(progress.done);
     }
 
+    /// Says something while the bar is out of the way.
+    pub fn suspend(&self, say: impl FnOnce()) {
+        self.bar.suspend(say);
+    }
+
     /// Takes the bar away.
     pub fn finish(self) {
         self.bar.finish_and_clear();

@@ -1,12 +1,12 @@
 //! `halfshade render`: scene to picture.
 
 use halfshade::camera::Camera;
-use halfshade::film::{Film, Rect};
+use halfshade::film::{ErrorEstimate, Film, Rect, StoppedBy};
 use halfshade::import::{Imported, import};
 use halfshade::math::UVec2;
 use halfshade::output::exr::Window;
 use halfshade::prepare::{Prepared, prepare};
-use halfshade::render::{Job, render, replay};
+use halfshade::render::{Event, Job, Limits, Significant, render_within, replay};
 use halfshade::scene::{Placed, Scene, Settings};
 
 use super::Failure;
@@ -14,11 +14,12 @@ use super::arguments::SampleId;
 use super::console::{Console, print};
 use super::interrupt::Interrupt;
 use super::layers::LayerValues;
+use super::limits::limits;
 use super::memory;
 use super::metadata::metadata;
 use super::options::RenderOptions;
 use super::progress::RenderProgress;
-use super::stats::{Done, Seconds, Stats, StepClock, StoppedBy};
+use super::stats::{Done, Seconds, Stats, StepClock};
 use super::targets::Targets;
 
 /// Does what the options say.
@@ -45,9 +46,10 @@ fn run_on_pool(
     let mut clock = StepClock::start();
     let mut seconds = Seconds::default();
 
-    let imported = load(options)?;
+    let mut imported = load(options)?;
+    let crop = crop(options, &imported.settings)?;
+    let limits = limits(options, &mut imported.settings, crop, clock.begin())?;
     let settings = &imported.settings;
-    let crop = crop(options, settings)?;
     let camera = camera(options, &imported.scene)?;
     seconds.import = clock.step();
 
@@ -67,7 +69,7 @@ fn run_on_pool(
     };
 
     memory::check(&job, &options.output.layers)?;
-    let film = watched(&job, interrupt, options.console);
+    let film = watched(&job, &limits, interrupt, options.console);
     seconds.render = clock.step();
     let values = LayerValues::of_film(&film, &options.output.layers);
     let window = Window {
@@ -75,7 +77,7 @@ fn run_on_pool(
         corner: UVec2::new(crop.x, crop.y),
         size: crop.size(),
     };
-    targets.write(window, &values, &metadata(options, settings, crop))?;
+    targets.write(window, &values, &metadata(options, settings, &film))?;
     seconds.output = clock.step();
     seconds.total = clock.total();
     let done = Done {
@@ -84,11 +86,7 @@ fn run_on_pool(
         triangles: imported.scene.triangle_count(),
         seed: settings.sampling.seed,
         seconds,
-        stopped_by: if film.is_complete {
-            StoppedBy::Samples
-        } else {
-            StoppedBy::Interrupt
-        },
+        error: film.error(),
     };
     finish(options, targets, &done)
 }
@@ -167,31 +165,38 @@ fn replay_one(options: &RenderOptions, job: &Job) -> Result<(), Failure> {
 }
 
 /// Renders with a progress bar, until it is done or the user has seen enough.
-fn watched(job: &Job, interrupt: &Interrupt, console: Console) -> Film {
-    let settings = job.settings;
+fn watched(job: &Job, limits: &Limits, interrupt: &Interrupt, console: Console) -> Film {
     interrupt.rendering_begins();
-    console.detail(format_args!(
-        "rendering {}x{} pixels, {} samples each, on {} threads",
-        job.crop.width,
-        job.crop.height,
-        settings.sampling.samples_per_pixel(),
-        rayon::current_num_threads()
-    ));
-    if settings.sampling.samples_per_pixel() != settings.sampling.samples {
-        console.say(format_args!(
-            "note: {} samples were asked for; the pattern's cells make it {}",
-            settings.sampling.samples,
-            settings.sampling.samples_per_pixel()
-        ));
-    }
+    announce_samples(job, limits, console);
     let progress = RenderProgress::new(console.shows_progress());
-    let film = render(job, interrupt.is_requested(), &|p| progress.observe(p));
-    if film.is_complete {
+    let film = render_within(job, limits, interrupt.is_requested(), &|event| match event {
+        Event::Progress(p) => progress.observe(p),
+        Event::Forecast(forecast) => progress.suspend(|| console.say(forecast)),
+    });
+    if film.stopped_by != StoppedBy::Interrupt {
         interrupt.rendering_is_complete();
     }
     progress.finish();
     say_rejected(console, &film);
     film
+}
+
+fn announce_samples(job: &Job, limits: &Limits, console: Console) {
+    let asked = job.settings.sampling.samples;
+    console.detail(format_args!(
+        "rendering {}x{} pixels, {}{} samples each, on {} threads",
+        job.crop.width,
+        job.crop.height,
+        if limits.is_open() { "at most " } else { "" },
+        limits.samples,
+        rayon::current_num_threads()
+    ));
+    if *limits == Limits::of(job.settings) && limits.samples != asked {
+        console.say(format_args!(
+            "note: {asked} samples were asked for; the pattern's cells make it {}",
+            limits.samples
+        ));
+    }
 }
 
 fn say_rejected(console: Console, film: &Film) {
@@ -219,7 +224,7 @@ fn finish(options: &RenderOptions, targets: &Targets, done: &Done) -> Result<(),
     let size = done.film.size();
     let s = done.seconds;
     console.say(format_args!(
-        "{}: {}x{} pixels, {} samples each, {:.2} s (import {:.2}, prepare {:.2}, render {:.2}, output {:.2})",
+        "{}: {}x{} pixels, {} samples each, {:.2} s (import {:.2}, prepare {:.2}, render {:.2}, output {:.2}){}",
         files.join(", "),
         size.x,
         size.y,
@@ -228,17 +233,24 @@ fn finish(options: &RenderOptions, targets: &Targets, done: &Done) -> Result<(),
         s.import,
         s.prepare,
         s.render,
-        s.output
+        s.output,
+        done.error.map_or(String::new(), |error| error_text(&error))
     ));
-    match done.stopped_by {
-        StoppedBy::Samples => Ok(()),
+    match done.film.stopped_by {
         StoppedBy::Interrupt => Err(Failure::Interrupted),
+        _ => Ok(()),
     }
 }
 
 fn samples_text(film: &Film) -> String {
     match film.sample_counts() {
         (min, _, max) if min == max => min.to_string(),
-        (min, _, max) => format!("{min} to {max}"),
+        (min, mean, max) => format!("{min} to {max} (on average {mean:.1})"),
     }
+}
+
+/// Like `; estimated relative RMSE 0.0123 (0.0119 to 0.0127)`.
+fn error_text(error: &ErrorEstimate) -> String {
+    let [estimate, low, high] = [error.estimate, error.low, error.high].map(Significant);
+    format!("; estimated relative RMSE {estimate} ({low} to {high})")
 }

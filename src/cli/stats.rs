@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use halfshade::color::Rgb;
-use halfshade::film::{Film, RayCounts};
+use halfshade::film::{ErrorEstimate, Film, RayCounts, StoppedBy};
 use halfshade::output::{OutputError, write_whole};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
@@ -24,9 +24,10 @@ pub struct Stats {
     pub cpu_seconds: Option<f64>,
     pub rays: RayStats,
     pub peak_memory_bytes: Option<u64>,
-    /// The error that the render states about itself: it does not yet, and this is `null`.
-    pub error: Option<f64>,
-    pub stopped_by: StoppedBy,
+    /// The error that the render states about itself; `null` where it cannot tell: a grid, or a
+    /// single sample per pixel.
+    pub error: Option<ErrorStats>,
+    pub stopped_by: &'static str,
     pub rejected_samples: u64,
     /// What the scene did not need: nothing is left out yet.
     pub left_out: &'static [&'static str],
@@ -60,14 +61,38 @@ pub struct RayStats {
     secondary: u64,
 }
 
-/// Why a render ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum StoppedBy {
-    /// Every pixel has its samples.
-    Samples,
-    /// The user.
-    Interrupt,
+/// What a render says about its own error.
+#[derive(Debug, Serialize)]
+pub struct ErrorStats {
+    /// Square root of relMSE: the mean over pixels and channels of (a - b)² / (b² + 0.01).
+    metric: &'static str,
+    estimate: f64,
+    /// The 95 % interval; `null` where the error rests on so few pixels that it has no upper end.
+    low: f64,
+    high: Option<f64>,
+    /// Of relMSE, in the worst 0.1 % of the pixels.
+    worst_share: f64,
+}
+
+impl From<ErrorEstimate> for ErrorStats {
+    fn from(error: ErrorEstimate) -> Self {
+        Self {
+            metric: "sqrt-relmse",
+            estimate: error.estimate,
+            low: error.low,
+            high: Some(error.high).filter(|high| high.is_finite()),
+            worst_share: error.worst_share,
+        }
+    }
+}
+
+fn reason(stopped_by: StoppedBy) -> &'static str {
+    match stopped_by {
+        StoppedBy::Samples => "samples",
+        StoppedBy::Time => "time",
+        StoppedBy::Error => "error",
+        StoppedBy::Interrupt => "interrupt",
+    }
 }
 
 /// What is known of a render once its picture is there.
@@ -77,7 +102,7 @@ pub struct Done<'a> {
     pub triangles: u64,
     pub seed: u64,
     pub seconds: Seconds,
-    pub stopped_by: StoppedBy,
+    pub error: Option<ErrorEstimate>,
 }
 
 impl Stats {
@@ -103,8 +128,8 @@ impl Stats {
                 secondary,
             },
             peak_memory_bytes: process::peak_memory_bytes(),
-            error: None,
-            stopped_by: done.stopped_by,
+            error: done.error.map(ErrorStats::from),
+            stopped_by: reason(done.film.stopped_by),
             rejected_samples: done.film.rejected,
             left_out: &[],
             sha256: digest(done.pixels),
@@ -152,6 +177,11 @@ impl StepClock {
         let seconds = (now - self.last).as_secs_f64();
         self.last = now;
         seconds
+    }
+
+    /// When it was started.
+    pub fn begin(&self) -> Instant {
+        self.begin
     }
 
     /// Seconds since the start.

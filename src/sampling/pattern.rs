@@ -73,6 +73,17 @@ impl Pattern {
             Self::Random | Self::Sobol => count.max(1),
         }
     }
+
+    /// How many sets a pixel's camera samples are dealt to in turn, each randomised on its own:
+    /// the difference between two tells the error of their mean, whatever the pattern
+    /// (Owen 1995, "Randomly Permuted (t,m,s)-Nets and (t,s)-Sequences"). A grid is one: its
+    /// error is no chance, and two grids would be the same.
+    pub fn sets(self) -> u32 {
+        match self {
+            Self::Grid => 1,
+            Self::Jittered | Self::Random | Self::Sobol => 2,
+        }
+    }
 }
 
 impl Target {
@@ -89,8 +100,20 @@ impl Target {
 }
 
 impl SamplingConfig {
-    /// Camera samples that each pixel really takes; at least 1.
+    /// Camera samples that each pixel really takes, at least 1: what is asked for, or as many as
+    /// fill the cells of each set ([`Pattern::sets`]). 81 jittered samples become two sets of 7 × 6.
     pub fn samples_per_pixel(&self) -> u32 {
-        self.pattern.cells(self.samples)
+        match self.pattern {
+            Pattern::Jittered if self.samples > 1 => {
+                self.samples_per_set().saturating_mul(self.pattern.sets())
+            }
+            Pattern::Grid | Pattern::Jittered => self.samples_per_set(),
+            Pattern::Random | Pattern::Sobol => self.samples.max(1),
+        }
+    }
+
+    /// Camera samples of the largest set of a pixel.
+    pub fn samples_per_set(&self) -> u32 {
+        self.pattern.cells(self.samples.div_ceil(self.pattern.sets()))
     }
 }

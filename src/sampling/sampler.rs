@@ -15,14 +15,18 @@ use super::{Pattern, SamplingConfig, Target};
 /// Dimensions come in sets: points of one set avoid each other, points of different sets have
 /// nothing to do with each other. Each use of a sample has a set of its own, except that where the
 /// sample lands in its pixel and on the first light form one four-dimensional Sobol set.
+///
+/// A pixel's samples are dealt in turn to sets that know nothing of each other
+/// ([`Pattern::sets`]): even indices are the one, odd indices the other.
 #[derive(Clone, Copy, Debug)]
 pub struct Sampler {
     pattern: Pattern,
     target: Target,
-    /// Of all samples of the pixel; used by patterns that have cells.
+    /// Of all samples of the set; used by patterns that have cells.
     cells: Cells,
-    /// Of seed and pixel.
+    /// Of seed, pixel and set.
     key: Key,
+    /// Which sample of its set.
     index: u32,
 }
 
@@ -44,12 +48,15 @@ impl Sampler {
     /// with more points of the same pattern.
     pub fn new(config: &SamplingConfig, pixel: UVec2, index: u32) -> Self {
         let pixel = u64::from(pixel.y) << 32 | u64::from(pixel.x);
+        let sets = config.pattern.sets();
         Self {
             pattern: config.pattern,
             target: config.target,
-            cells: Cells::at_least(config.samples),
-            key: Key::new(config.seed).with(pixel),
-            index,
+            cells: Cells::at_least(config.samples.div_ceil(sets)),
+            key: Key::new(config.seed)
+                .with(pixel)
+                .with(u64::from(index % sets)),
+            index: index / sets,
         }
     }
 

@@ -2,7 +2,14 @@
 //!
 //! Means are kept in double precision, so that neither 2^24 samples in one pixel nor radiances of
 //! very different size lose digits. A sample that is not finite is dropped, counted, and the
-//! first is kept with what it takes to trace it again.
+//! first is kept with what it takes to trace it again. The two halves of every pixel tell how wrong the
+//! picture is ([`ErrorEstimate`]).
+
+mod estimate;
+mod pixel;
+
+pub use estimate::{ErrorEstimate, ErrorSums, RELATIVE_FLOOR, relative_weights};
+pub use pixel::{Moments, Pixel};
 
 use crate::color::Rgb;
 use crate::math::UVec2;
@@ -48,53 +55,6 @@ impl Rect {
     }
 }
 
-/// The samples of one pixel.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Pixel {
-    mean: [f64; 3],
-    /// Sum of the squared deviations from the mean.
-    deviation: [f64; 3],
-    count: u64,
-}
-
-impl Pixel {
-    /// Adds a sample; `false` where it is not finite, and the pixel stays as it was.
-    pub fn add_sample(&mut self, value: Rgb) -> bool {
-        if !value.is_finite() {
-            return false;
-        }
-        self.count += 1;
-        let share = 1.0 / self.count as f64;
-        for (i, c) in value.channels().into_iter().enumerate() {
-            // Welford 1962, "Note on a Method for Calculating Corrected Sums of Squares".
-            let off = f64::from(c) - self.mean[i];
-            self.mean[i] += off * share;
-            self.deviation[i] += off * (f64::from(c) - self.mean[i]);
-        }
-        true
-    }
-
-    /// The mean of its samples; black where there are none.
-    pub fn mean(&self) -> Rgb {
-        Rgb::from(self.mean.map(|m| m as f32))
-    }
-
-    /// Variance of the mean, as if the samples were independent: for stratified patterns it is
-    /// an upper estimate. 0 where there are fewer than two samples.
-    pub fn variance(&self) -> Rgb {
-        if self.count < 2 {
-            return Rgb::BLACK;
-        }
-        let n = self.count as f64;
-        Rgb::from(self.deviation.map(|d| (d / (n * (n - 1.0))) as f32))
-    }
-
-    /// How many samples it holds.
-    pub fn count(&self) -> u64 {
-        self.count
-    }
-}
-
 /// A sample that was dropped since it is not finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RejectedSample {
@@ -116,6 +76,11 @@ pub struct RayCounts {
 }
 
 impl RayCounts {
+    /// Rays of every kind.
+    pub fn total(&self) -> u64 {
+        self.camera + self.shadow + self.secondary
+    }
+
     /// Adds those of `other`.
     pub fn add(&mut self, other: &Self) {
         self.camera += other.camera;
@@ -139,8 +104,21 @@ pub struct Film {
     pub first_rejected: Option<RejectedSample>,
     /// Rays that were traced.
     pub rays: RayCounts,
-    /// Whether every pixel has all its samples.
-    pub is_complete: bool,
+    /// Why it has no more samples.
+    pub stopped_by: StoppedBy,
+}
+
+/// Why a render ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StoppedBy {
+    /// The samples that were asked for are there.
+    Samples,
+    /// The deadline.
+    Time,
+    /// The error is as small as was asked for.
+    Error,
+    /// The user.
+    Interrupt,
 }
 
 impl Film {
@@ -154,9 +132,32 @@ impl Film {
         self.pixels.iter().map(Pixel::mean).collect()
     }
 
-    /// Variance of each pixel's mean.
+    /// Variance of each pixel's value, without bias, though of one degree of freedom by pixel
+    /// ([`Pixel::squared_error`]).
     pub fn variances(&self) -> Vec<Rgb> {
-        self.pixels.iter().map(Pixel::variance).collect()
+        let variance = |pixel: &Pixel| Rgb::from(pixel.squared_error().map(|v| v as f32));
+        self.pixels.iter().map(variance).collect()
+    }
+
+    /// The means of each pixel's half number `half`, 0 or 1; black where it has no samples.
+    pub fn half(&self, half: usize) -> Vec<Rgb> {
+        let mean = |pixel: &Pixel| Rgb::from(pixel.halves()[half].mean().map(|m| m as f32));
+        self.pixels.iter().map(mean).collect()
+    }
+
+    /// Each pixel's part of the estimated √relMSE: the square root of the mean over the channels
+    /// of its squared error over (value² + 0.01).
+    pub fn errors(&self) -> Vec<f32> {
+        let error = |pixel: &Pixel| {
+            let square = pixel.relative_squared_error().unwrap_or(0.0);
+            (square / 3.0).sqrt() as f32
+        };
+        self.pixels.iter().map(error).collect()
+    }
+
+    /// How wrong the picture is; `None` where its pattern or its samples do not tell.
+    pub fn error(&self) -> Option<ErrorEstimate> {
+        ErrorEstimate::of(&self.pixels)
     }
 
     /// Smallest, mean and largest number of samples of a pixel.
@@ -168,40 +169,5 @@ impl Film {
             total as f64 / self.pixels.len().max(1) as f64,
             counts().max().unwrap_or(0),
         )
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_mean_of_a_constant_stays_exact() {
-        let mut pixel = Pixel::default();
-        for _ in 0..(1 << 24) + 3 {
-            pixel.add_sample(Rgb::splat(0.1));
-        }
-        assert!((pixel.mean().r - 0.1).abs() < 1e-8);
-        assert!(pixel.variance().r < 1e-20);
-    }
-
-    #[test]
-    fn one_bad_sample_does_no_harm() {
-        let mut pixel = Pixel::default();
-        assert!(pixel.add_sample(Rgb::splat(2.0)));
-        assert!(!pixel.add_sample(Rgb::new(f32::NAN, 0.0, 0.0)));
-        assert!(!pixel.add_sample(Rgb::new(0.0, f32::INFINITY, 0.0)));
-        assert_eq!(pixel.mean(), Rgb::splat(2.0));
-        assert_eq!(pixel.count(), 1);
-    }
-
-    #[test]
-    fn variance_is_that_of_the_mean() {
-        let mut pixel = Pixel::default();
-        for v in [1.0, 3.0] {
-            pixel.add_sample(Rgb::splat(v));
-        }
-        // Sample variance 2, over 2 samples.
-        assert!((pixel.variance().g - 1.0).abs() < 1e-6);
     }
 }

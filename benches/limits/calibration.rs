@@ -1,0 +1,42 @@
+//! How often the 95 % interval holds the true error.
+
+use halfshade::math::UVec2;
+use halfshade::sampling::Pattern;
+
+use crate::subject::{Subject, true_error, with_scene};
+
+const SEEDS: u64 = 200;
+
+pub fn run(scenes: &[String]) {
+    println!("scene      pattern   samples  covered  est/true  half-width");
+    for name in ["penumbra", "cornell", "glass"] {
+        if scenes.is_empty() || scenes.iter().any(|s| s == name) {
+            with_scene(name, UVec2::new(64, 36), |subject| of_scene(name, subject));
+        }
+    }
+}
+
+fn of_scene(name: &str, subject: &Subject) {
+    let reference = subject.reference(1 << 14);
+    for pattern in [Pattern::Random, Pattern::Jittered, Pattern::Sobol] {
+        for samples in [4, 16, 64] {
+            let (mut covered, mut ratios, mut widths) = (0, 0.0, 0.0);
+            for seed in 0..SEEDS {
+                let film = subject.uniform(&subject.settings(pattern, samples, seed)).film;
+                let error = film.error().unwrap();
+                let truth = true_error(&film, &reference);
+                covered += u32::from(error.low <= truth && truth <= error.high);
+                ratios += (error.estimate / truth).powi(2);
+                widths += (error.high / error.estimate).ln();
+            }
+            let mean = |sum: f64| sum / SEEDS as f64;
+            println!(
+                "{name:10} {:9} {samples:7} {:7.1}% {:9.3} {:10.3}",
+                pattern.name(),
+                100.0 * mean(covered.into()),
+                mean(ratios).sqrt(),
+                mean(widths)
+            );
+        }
+    }
+}

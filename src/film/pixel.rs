@@ -1,0 +1,142 @@
+//! The samples of one pixel, in two halves whose difference tells the error of their mean.
+
+use crate::color::Rgb;
+
+/// Samples of one half of a pixel: their mean and spread.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Moments {
+    mean: [f64; 3],
+    /// Sum of the squared deviations from the mean.
+    deviation: [f64; 3],
+    count: u64,
+}
+
+impl Moments {
+    /// Adds a sample; `false` where it is not finite, and all stays as it was.
+    fn add_sample(&mut self, value: Rgb) -> bool {
+        if !value.is_finite() {
+            return false;
+        }
+        self.count += 1;
+        let share = 1.0 / self.count as f64;
+        for (i, c) in value.channels().into_iter().enumerate() {
+            // Welford 1962, "Note on a Method for Calculating Corrected Sums of Squares".
+            let off = f64::from(c) - self.mean[i];
+            self.mean[i] += off * share;
+            self.deviation[i] += off * (f64::from(c) - self.mean[i]);
+        }
+        true
+    }
+
+    /// Their mean by channel; 0 where there are none.
+    pub fn mean(&self) -> [f64; 3] {
+        self.mean
+    }
+
+    /// Variance of a single sample by channel; 0 where there are fewer than two. Over the count it
+    /// overstates the variance of the mean of a stratified pattern, often several times over.
+    pub fn sample_variance(&self) -> [f64; 3] {
+        let degrees = self.count.saturating_sub(1).max(1) as f64;
+        self.deviation.map(|d| d / degrees)
+    }
+
+    /// Their number.
+    pub fn count(&self) -> u64 {
+        self.count
+    }
+}
+
+/// The samples of one pixel.
+///
+/// Its halves are the sets of [`crate::sampling::Pattern::sets`]: independent, each with its own
+/// mean. Where both have samples the pixel is the plain average of the two means, however many samples
+/// each has, so that no weight depends on a value and a quarter of their squared difference is the
+/// average's variance without bias, for every pattern.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Pixel {
+    halves: [Moments; 2],
+}
+
+impl Pixel {
+    /// Adds a sample to a half, 0 or 1; `false` where it is not finite, and the pixel stays as it was.
+    pub fn add_sample(&mut self, half: usize, value: Rgb) -> bool {
+        self.halves[half].add_sample(value)
+    }
+
+    /// The two halves.
+    pub fn halves(&self) -> &[Moments; 2] {
+        &self.halves
+    }
+
+    /// Whether both halves have samples, so that [`Pixel::squared_error`] means something.
+    pub fn has_error(&self) -> bool {
+        self.halves.iter().all(|half| half.count > 0)
+    }
+
+    /// Its value by channel; black where there are no samples.
+    pub fn value(&self) -> [f64; 3] {
+        let [a, b] = &self.halves;
+        match (a.count, b.count) {
+            (_, 0) => a.mean,
+            (0, _) => b.mean,
+            _ => std::array::from_fn(|c| 0.5 * (a.mean[c] + b.mean[c])),
+        }
+    }
+
+    /// Its value in single precision.
+    pub fn mean(&self) -> Rgb {
+        Rgb::from(self.value().map(|m| m as f32))
+    }
+
+    /// The squared error of its value by channel, as the halves tell it: right on average, though by itself
+    /// it has one degree of freedom. 0 where one half is empty.
+    pub fn squared_error(&self) -> [f64; 3] {
+        if !self.has_error() {
+            return [0.0; 3];
+        }
+        let [a, b] = &self.halves;
+        std::array::from_fn(|c| 0.25 * (a.mean[c] - b.mean[c]).powi(2))
+    }
+
+    /// How many samples it holds.
+    pub fn count(&self) -> u64 {
+        self.halves.iter().map(Moments::count).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mean_of_a_constant_stays_exact() {
+        let mut pixel = Pixel::default();
+        for i in 0..(1 << 24) + 3 {
+            pixel.add_sample(i % 2, Rgb::splat(0.1));
+        }
+        assert!((pixel.mean().r - 0.1).abs() < 1e-8);
+        assert!(pixel.squared_error()[0] < 1e-20);
+        assert!(pixel.halves()[0].sample_variance()[0] < 1e-20);
+    }
+
+    #[test]
+    fn one_bad_sample_does_no_harm() {
+        let mut pixel = Pixel::default();
+        assert!(pixel.add_sample(0, Rgb::splat(2.0)));
+        assert!(!pixel.add_sample(1, Rgb::new(f32::NAN, 0.0, 0.0)));
+        assert!(!pixel.add_sample(1, Rgb::new(0.0, f32::INFINITY, 0.0)));
+        assert_eq!(pixel.mean(), Rgb::splat(2.0));
+        assert!(pixel.count() == 1 && !pixel.has_error());
+    }
+
+    #[test]
+    fn halves_of_different_size_weigh_the_same() {
+        let mut pixel = Pixel::default();
+        for (half, value) in [(0, 1.0), (1, 2.0), (1, 4.0)] {
+            pixel.add_sample(half, Rgb::splat(value));
+        }
+        assert_eq!(pixel.value(), [2.0; 3]);
+        assert_eq!(pixel.squared_error(), [1.0; 3]);
+        assert_eq!(pixel.halves()[1].sample_variance(), [2.0; 3]);
+    }
+}

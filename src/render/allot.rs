@@ -1,0 +1,313 @@
+//! Where the next samples go: to the pixels whose error they lower most.
+//!
+//! A half of a pixel is allotted by what the *other* half has seen there and what both have seen in
+//! the eight pixels around, never by its own samples, so that no half stops where it has been lucky (Kirk and Arvo
+//! 1991, "Unbiased Sampling Techniques for Image Synthesis", tell of the bias of doing so). The halves weigh the same
+//! whatever their counts ([`crate::film::Pixel`]). What is left is a bias of second order: the other half's count, and so how well it knows,
+//! once depended on this half. `tests/adaptive.rs` measures that it cannot be seen.
+//!
+//! Variances of samples say where the error is, but overstate that of a stratified pattern by far. How far, each
+//! tile learns from the difference of its pixels' halves. With errors falling like n^-p and samples that cost c, the sum of all
+//! errors is least where n grows like (variance / c)^(1 / (1 + p)) (Lagrange).
+
+use rayon::prelude::*;
+
+use super::tile::{Halves, Tile};
+use crate::film::{Moments, Pixel, Rect, relative_weights};
+use crate::sampling::Pattern;
+
+/// What a half has seen in its pixel counts like this many samples less than the neighbours' mean.
+const NEIGHBOURHOOD: f32 = 4.0;
+/// As many pixels of the whole film stand beside those of a tile.
+const FILM: f64 = 8.0;
+/// Every pixel keeps this share of the mean number of samples: what no sample has met yet, none has asked for.
+const LEAST_SHARE: f64 = 0.125;
+/// Most samples of one half of a pixel.
+const MOST: u32 = 1 << 28;
+
+/// One half of a pixel.
+struct Share {
+    taken: u32,
+    /// Its part of the film's relMSE is this times n^-p.
+    weight: f32,
+    /// The best number of samples is in proportion to this.
+    score: f32,
+}
+
+struct TileShares {
+    /// Rays of a sample.
+    cost: f64,
+    shares: Vec<Share>,
+}
+
+/// How many samples each half of each pixel is to get.
+pub(super) struct Allotment {
+    pattern: Pattern,
+    /// Samples come in multiples of this: a round of cells.
+    unit: u32,
+    pixels: u64,
+    tiles: Vec<TileShares>,
+}
+
+/// What comes of a number of samples.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Outcome {
+    /// Samples in all, those that are there included.
+    pub samples: u64,
+    /// Rays in all.
+    pub rays: f64,
+    /// The sum over all pixels of their parts of relMSE, up to a factor.
+    pub error: f64,
+}
+
+/// The power of n with which the squared error of `pattern` falls where most of it is, at edges:
+/// Ramamoorthi et al. 2012, "A Theory of Monte Carlo Visibility Sampling". Rounds of jittered cells are
+/// independent of each other.
+pub(super) fn exponent(pattern: Pattern) -> f64 {
+    match pattern {
+        Pattern::Grid | Pattern::Jittered | Pattern::Random => 1.0,
+        Pattern::Sobol => 1.5,
+    }
+}
+
+impl Allotment {
+    /// Looks at the samples of all `tiles` of `film`; each half of each pixel has some.
+    pub fn new(film: Rect, tiles: &[Tile], pattern: Pattern, unit: u32) -> Self {
+        let difficulty = Difficulty::of(film, tiles);
+        let exponent = exponent(pattern);
+        let measured: Vec<_> = tiles
+            .par_iter()
+            .map(|tile| Measured::of(tile, &difficulty, exponent))
+            .collect();
+        let film_factor = {
+            let sum = |f: fn(&Measured) -> f64| measured.iter().map(f).sum::<f64>();
+            sum(|m| m.error) / sum(|m| m.model).max(f64::MIN_POSITIVE)
+        };
+        let tiles = measured
+            .into_par_iter()
+            .map(|measured| measured.shares(film_factor, exponent))
+            .collect();
+        Self {
+            pattern,
+            unit,
+            pixels: film.area(),
+            tiles,
+        }
+    }
+
+    /// What there is now.
+    pub fn now(&self) -> Outcome {
+        self.outcome(0.0, 0)
+    }
+
+    /// What comes of numbers of samples of `scale` times the scores.
+    pub fn at(&self, scale: f32) -> Outcome {
+        let by_score = self.outcome(scale, 0);
+        self.outcome(scale, self.least(by_score.samples))
+    }
+
+    /// The largest scale whose outcome is `within`, where all smaller ones are.
+    pub fn scale(&self, within: impl Fn(&Outcome) -> bool) -> f32 {
+        let (mut low, mut high) = (-60.0_f32, 60.0_f32);
+        for _ in 0..16 {
+            let middle = 0.5 * (low + high);
+            if within(&self.at(middle.exp2())) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        low.exp2()
+    }
+
+    /// Sets the goals of all tiles.
+    pub fn aim(&self, tiles: &mut [Tile], scale: f32) {
+        let least = self.least(self.outcome(scale, 0).samples);
+        tiles
+            .par_iter_mut()
+            .zip(&self.tiles)
+            .for_each(|(tile, of)| {
+                for (goal, shares) in tile.goal.iter_mut().zip(of.shares.chunks_exact(2)) {
+                    *goal = [0, 1].map(|half| self.count(&shares[half], scale, least));
+                }
+            });
+    }
+
+    /// What every half of a pixel gets at least where there are `samples` in all.
+    fn least(&self, samples: u64) -> u32 {
+        let mean = samples as f64 / (2 * self.pixels) as f64;
+        self.rounded((LEAST_SHARE * mean) as f32)
+    }
+
+    fn count(&self, share: &Share, scale: f32, least: u32) -> u32 {
+        self.rounded(scale * share.score)
+            .max(least)
+            .max(share.taken)
+    }
+
+    /// The number of samples near `x` that the pattern does well with.
+    fn rounded(&self, x: f32) -> u32 {
+        let x = x.min(MOST as f32);
+        match self.pattern {
+            // Between powers of two a net is unbalanced: to the nearer one, in proportion.
+            Pattern::Sobol => {
+                let x = (x * std::f32::consts::SQRT_2) as u32;
+                x.checked_ilog2().map_or(0, |log| 1 << log)
+            }
+            Pattern::Random => x as u32,
+            Pattern::Grid | Pattern::Jittered => (x / self.unit as f32).round() as u32 * self.unit,
+        }
+    }
+
+    fn outcome(&self, scale: f32, least: u32) -> Outcome {
+        let exponent = exponent(self.pattern) as f32;
+        let parts: Vec<Outcome> = self
+            .tiles
+            .par_iter()
+            .map(|tile| {
+                let mut sum = Outcome::default();
+                for share in &tile.shares {
+                    let count = self.count(share, scale, least);
+                    sum.samples += u64::from(count);
+                    sum.error += f64::from(share.weight * (count as f32).powf(-exponent));
+                }
+                sum.rays = sum.samples as f64 * tile.cost;
+                sum
+            })
+            .collect();
+        let mut total = Outcome::default();
+        for part in parts {
+            total.samples += part.samples;
+            total.rays += part.rays;
+            total.error += part.error;
+        }
+        total
+    }
+}
+
+/// How varied the samples of each half of each pixel are, over what the metric divides by.
+struct Difficulty {
+    film: Rect,
+    halves: Vec<[f32; 2]>,
+}
+
+impl Difficulty {
+    fn of(film: Rect, tiles: &[Tile]) -> Self {
+        let mut halves = vec![[0.0; 2]; film.area() as usize];
+        let by_tile: Vec<Vec<[f32; 2]>> = tiles
+            .par_iter()
+            .map(|tile| tile.pixels.iter().map(variation).collect())
+            .collect();
+        for (tile, of) in tiles.iter().zip(by_tile) {
+            for (pixel, value) in tile.rect().pixels().zip(of) {
+                let (x, y) = (pixel.x - film.x, pixel.y - film.y);
+                halves[(y * film.width + x) as usize] = value;
+            }
+        }
+        Self { film, halves }
+    }
+
+    /// For each half of the pixel in column `x` and row `y`: what the other half, which has `taken`
+    /// samples, and the pixels around say.
+    fn for_halves(&self, x: u32, y: u32, taken: Halves) -> [f32; 2] {
+        let around = self.around(x, y);
+        let own = self.halves[(y * self.film.width + x) as usize];
+        [1, 0].map(|other: usize| {
+            let count = taken[other] as f32;
+            (count * own[other] + NEIGHBOURHOOD * around) / (count + NEIGHBOURHOOD)
+        })
+    }
+
+    /// The mean over both halves of the pixels around.
+    fn around(&self, x: u32, y: u32) -> f32 {
+        let (mut sum, mut count) = (0.0, 0.0);
+        for row in y.saturating_sub(1)..(y + 2).min(self.film.height) {
+            for column in x.saturating_sub(1)..(x + 2).min(self.film.width) {
+                if (column, row) != (x, y) {
+                    let [a, b] = self.halves[(row * self.film.width + column) as usize];
+                    sum += a + b;
+                    count += 2.0;
+                }
+            }
+        }
+        if count > 0.0 { sum / count } else { 0.0 }
+    }
+}
+
+/// The variance of the samples of each half, in units of the metric, summed over the channels.
+fn variation(pixel: &Pixel) -> [f32; 2] {
+    let of = |half: &Moments| {
+        let weights = relative_weights(half.mean());
+        let variance = half.sample_variance();
+        let weighted = variance.iter().zip(weights).map(|(v, w)| v * w);
+        weighted.sum::<f64>() as f32
+    };
+    [of(&pixel.halves()[0]), of(&pixel.halves()[1])]
+}
+
+/// What a tile's samples say before the tile is compared with the film.
+struct Measured<'a> {
+    tile: &'a Tile,
+    difficulty: Vec<[f32; 2]>,
+    /// The tile's part of relMSE, by the difference of the halves.
+    error: f64,
+    /// The same by the variances of the samples, up to a factor: what a tile of independent
+    /// neighbours would have.
+    model: f64,
+    /// How many pixels carry `model`, if all carried the same.
+    pixels: f64,
+}
+
+impl<'a> Measured<'a> {
+    fn of(tile: &'a Tile, difficulty: &Difficulty, exponent: f64) -> Self {
+        let film = difficulty.film;
+        let (mut error, mut model, mut squares) = (0.0, 0.0, 0.0);
+        let mut of_tile = Vec::with_capacity(tile.pixels.len());
+        for (i, place) in tile.rect().pixels().enumerate() {
+            let taken = tile.taken[i];
+            let of = difficulty.for_halves(place.x - film.x, place.y - film.y, taken);
+            let expected: f64 = of.iter().zip(taken).map(|(&d, n)| part(d, n, exponent)).sum();
+            error += tile.pixels[i].relative_squared_error().unwrap_or(0.0);
+            model += expected;
+            squares += expected * expected;
+            of_tile.push(of);
+        }
+        Self {
+            tile,
+            difficulty: of_tile,
+            error,
+            model,
+            pixels: if squares > 0.0 { model * model / squares } else { 0.0 },
+        }
+    }
+
+    /// Its allotment; `film_factor` is `error` over `model` for the whole film.
+    fn shares(self, film_factor: f64, exponent: f64) -> TileShares {
+        let factor = if self.model > 0.0 {
+            let own = self.error / self.model;
+            (self.pixels * own + FILM * film_factor) / (self.pixels + FILM)
+        } else {
+            film_factor
+        };
+        let taken = |tile: &Tile| tile.taken.iter().flatten().map(|&n| f64::from(n)).sum::<f64>();
+        let cost = self.tile.rays.total() as f64 / taken(self.tile).max(1.0);
+        let power = (1.0 / (1.0 + exponent)) as f32;
+        let pixels = self.tile.taken.iter().zip(&self.difficulty);
+        let shares = pixels.flat_map(|(taken, difficulty)| {
+            [0, 1].map(|half| {
+                let weight = 0.25 * factor as f32 * difficulty[half];
+                Share {
+                    taken: taken[half],
+                    weight,
+                    score: (weight / cost as f32).powf(power),
+                }
+            })
+        });
+        TileShares { cost, shares: shares.collect() }
+    }
+}
+
+/// What a half with `taken` samples adds to the squared error of its pixel.
+fn part(difficulty: f32, taken: u32, exponent: f64) -> f64 {
+    0.25 * f64::from(difficulty) * f64::from(taken.max(1)).powf(-exponent)
+}

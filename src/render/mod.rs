@@ -1,0 +1,288 @@
+//! The picture: every pixel's samples, on all cores, in an order that does not matter.
+//!
+//! The film is cut into tiles, and the work into passes over all of them: a render that is stopped early has seen the
+//! whole picture. A pixel's samples are added in the order of their indices whatever the threads do,
+//! and what a pass aims at is decided between passes from sums in a fixed order, so the same job gives
+//! the same bits, unless the clock ends it.
+
+mod allot;
+mod course;
+mod forecast;
+mod replay;
+mod stop;
+mod tile;
+
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::Instant;
+
+use rayon::prelude::*;
+
+use crate::camera::Camera;
+use crate::film::{Film, Pixel, Rect, StoppedBy};
+use crate::integrate::{Integrator, ViewKind, integrator};
+use crate::prepare::PreparedScene;
+use crate::scene::Settings;
+
+pub use forecast::{Forecast, Significant};
+pub use replay::{Replay, ReplayedRay, replay};
+
+use course::{Course, Step, aim_all, dealt, round};
+use forecast::{Bounds, Pace};
+use stop::Stop;
+use tile::{Halves, Tile, assemble, error_of, tiles};
+
+/// Samples of each half of each pixel before an error is believed and samples are allotted.
+const FIRST_SAMPLES: u32 = 4;
+/// By what a pass multiplies the number of samples, where somebody waits for a limit.
+const GROWTH: f64 = 1.3;
+/// The least by which a pass multiplies it; the first that adds a sample.
+const LEAST_GROWTHS: [f64; 4] = [1.02, 1.3, 2.0, 4.0];
+/// The share of the work after which a forecast is made.
+const FORECAST_SHARE: f64 = 0.05;
+
+/// What is to be rendered.
+#[derive(Debug)]
+pub struct Job<'a> {
+    /// The scene.
+    pub scene: &'a PreparedScene<'a>,
+    /// Where it is seen from, in prepared coordinates ([`PreparedScene::camera`]).
+    pub camera: Camera,
+    /// How it is rendered; its size is that of the whole film.
+    pub settings: &'a Settings,
+    /// The part of the film that is rendered.
+    pub crop: Rect,
+    /// Layers beside the picture.
+    pub layers: Vec<ViewKind>,
+}
+
+impl Job<'_> {
+    /// The most memory that [`render`] takes for the film, bytes: tiles and film are there
+    /// together while they are put together.
+    pub fn memory_bytes(&self) -> u64 {
+        let pixel = 2 * size_of::<Pixel>() + 2 * size_of::<Halves>();
+        let layer = size_of::<[f64; 3]>() + size_of::<[f32; 3]>();
+        self.crop.area() * (pixel + self.layers.len() * layer) as u64
+    }
+}
+
+/// When a render ends, and where its samples go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Camera samples per pixel on average, at most; at least 1.
+    pub samples: u32,
+    /// When to stop with what there is. Each pixel's first sample is taken even after it, so that
+    /// the picture has no holes.
+    pub deadline: Option<Instant>,
+    /// Stop when √relMSE, as estimated, is no larger. Has no effect for patterns of one set
+    /// ([`crate::sampling::Pattern::sets`]).
+    pub error: Option<f64>,
+    /// Samples go where the error is; else each pixel gets the same. Has no effect for patterns of one set.
+    pub is_adaptive: bool,
+}
+
+impl Limits {
+    /// Just the samples that `settings` ask for, the same for each pixel.
+    pub fn of(settings: &Settings) -> Self {
+        Self {
+            samples: settings.sampling.samples_per_pixel(),
+            deadline: None,
+            error: None,
+            is_adaptive: false,
+        }
+    }
+
+    /// Whether something else than a number of samples may end the render.
+    pub fn is_open(&self) -> bool {
+        self.deadline.is_some() || self.error.is_some()
+    }
+}
+
+/// How far a render has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    /// Camera samples that are done.
+    pub done: u64,
+    /// Camera samples in all, as far as is known by now.
+    pub total: u64,
+}
+
+/// What a render tells while it runs.
+#[derive(Clone, Copy, Debug)]
+pub enum Event {
+    /// A tile is done; from any thread.
+    Progress(Progress),
+    /// Once, where there is a deadline or an error to reach, after about 5 % of the work.
+    Forecast(Forecast),
+}
+
+/// Renders `job` on the current thread pool, with the samples that its settings ask for, the same for each pixel.
+///
+/// `observe` hears of every finished tile, from any thread. Once `cancel` is set the render ends
+/// within a few samples, and the film holds what there is.
+pub fn render(job: &Job, cancel: &AtomicBool, observe: &(dyn Fn(Event) + Sync)) -> Film {
+    render_within(job, &Limits::of(job.settings), cancel, observe)
+}
+
+/// As [`render`], with other limits; the number of samples in the job's settings is only the size of a jittered
+/// pattern's round.
+///
+/// Without a deadline the same job and limits give the same bits.
+pub fn render_within(
+    job: &Job,
+    limits: &Limits,
+    cancel: &AtomicBool,
+    observe: &(dyn Fn(Event) + Sync),
+) -> Film {
+    let mut run = Run {
+        job,
+        limits,
+        integrator: integrator(job.scene, job.settings),
+        cancel,
+        observe,
+        pace: Pace::start(),
+        tiles: tiles(job),
+        done: AtomicU64::new(0),
+        total: AtomicU64::new(job.crop.area() * u64::from(limits.samples)),
+        has_forecast: false,
+    };
+    let stopped_by = run.to_the_end();
+    assemble(job, &run.tiles, stopped_by)
+}
+
+/// A render at work.
+struct Run<'a> {
+    job: &'a Job<'a>,
+    limits: &'a Limits,
+    integrator: Box<dyn Integrator + 'a>,
+    cancel: &'a AtomicBool,
+    observe: &'a (dyn Fn(Event) + Sync),
+    pace: Pace,
+    tiles: Vec<Tile>,
+    done: AtomicU64,
+    /// Samples in all, as far as is known.
+    total: AtomicU64,
+    has_forecast: bool,
+}
+
+impl Run<'_> {
+    fn to_the_end(&mut self) -> StoppedBy {
+        if let Some(end) = self.first_passes() {
+            return end;
+        }
+        let is_adaptive = self.limits.is_adaptive && self.job.settings.sampling.pattern.sets() == 2;
+        if !self.limits.is_open() && !is_adaptive {
+            return self.remaining_passes();
+        }
+        loop {
+            let error = error_of(&self.tiles).map(|sums| sums.root());
+            if let (Some(error), Some(enough)) = (error, self.limits.error)
+                && error <= enough
+            {
+                return StoppedBy::Error;
+            }
+            let course = Course::of(self.job, &self.tiles, is_adaptive);
+            let Some(step) = self.next_step(&course, error) else {
+                return StoppedBy::Samples;
+            };
+            course.aim(&mut self.tiles, &step);
+            if let Some(end) = self.pass(self.limits.deadline) {
+                return end;
+            }
+        }
+    }
+
+    /// The first samples of every pixel: they are needed to say anything.
+    fn first_passes(&mut self) -> Option<StoppedBy> {
+        let pattern = self.job.settings.sampling.pattern;
+        let most = dealt(pattern, u64::from(self.limits.samples));
+        let round = round(self.job);
+        let first = round * FIRST_SAMPLES.div_ceil(round);
+        let mut samples = 1;
+        aim_all(&mut self.tiles, [1, 0]);
+        // Without a deadline: there is to be no hole in the picture.
+        let mut end = self.pass(None);
+        self.pace.warmed_up(self.rays());
+        while end.is_none() && samples <= first.min(most[0]) {
+            let aim = if round > 1 { first } else { samples };
+            aim_all(&mut self.tiles, most.map(|most| most.min(aim)));
+            end = self.pass(self.limits.deadline);
+            samples = 2 * aim;
+        }
+        end
+    }
+
+    /// All that is left of a fixed number of samples.
+    fn remaining_passes(&mut self) -> StoppedBy {
+        let most = dealt(self.job.settings.sampling.pattern, u64::from(self.limits.samples));
+        let mut samples = FIRST_SAMPLES;
+        loop {
+            samples = samples.saturating_mul(4).min(most[0]);
+            aim_all(&mut self.tiles, most.map(|most| most.min(samples)));
+            if let Some(end) = self.pass(None) {
+                return end;
+            }
+            if samples == most[0] {
+                return StoppedBy::Samples;
+            }
+        }
+    }
+
+    /// Brings all tiles to their goals; says why where that is to be the last of it.
+    fn pass(&mut self, deadline: Option<Instant>) -> Option<StoppedBy> {
+        let stop = Stop::new(self.cancel, deadline);
+        let (job, integrator, observe) = (self.job, self.integrator.as_ref(), self.observe);
+        let (done, total) = (&self.done, self.total.load(Ordering::Relaxed));
+        self.tiles.par_iter_mut().for_each(|tile| {
+            let taken = tile.render(job, integrator, &stop);
+            let done = done.fetch_add(taken, Ordering::Relaxed) + taken;
+            let total = total.max(done);
+            observe(Event::Progress(Progress { done, total }));
+        });
+        if stop.is_cancelled() && !self.is_at_goal() {
+            Some(StoppedBy::Interrupt)
+        } else if stop.is_late() {
+            Some(StoppedBy::Time)
+        } else {
+            None
+        }
+    }
+
+    fn is_at_goal(&self) -> bool {
+        self.tiles.iter().all(|tile| tile.taken == tile.goal)
+    }
+
+    fn rays(&self) -> f64 {
+        self.tiles.iter().map(|tile| tile.rays.total() as f64).sum()
+    }
+
+    /// What the next pass is for; `None` where all samples are there.
+    fn next_step(&mut self, course: &Course, error: Option<f64>) -> Option<Step> {
+        let now = course.now();
+        let most_samples = self.job.crop.area() * u64::from(self.limits.samples);
+        let bounds = Bounds {
+            limits: self.limits,
+            pace: &self.pace,
+            most_samples,
+            now,
+            error_now: error.unwrap_or(f64::INFINITY),
+        };
+        let forecast = bounds.forecast(course);
+        self.total.store(forecast.samples, Ordering::Relaxed);
+        let share = self.pace.seconds() / forecast.seconds;
+        if self.limits.is_open() && error.is_some() && !self.has_forecast && share >= FORECAST_SHARE {
+            self.has_forecast = true;
+            (self.observe)(Event::Forecast(forecast));
+        }
+        let grown = |growth: f64| most_samples.min((growth * now.samples as f64) as u64);
+        let wanted = course.furthest(|o| {
+            // A little further than asked for: most passes that aim at it get there.
+            o.samples <= grown(GROWTH) && bounds.is_in_time(o) && bounds.is_short_of(o, 0.99)
+        });
+        // Near a limit passes would become ever smaller; and some courses have no small steps.
+        let least = LEAST_GROWTHS.map(|growth| course.furthest(|o| o.samples <= grown(growth)));
+        std::iter::once(wanted)
+            .filter(|step| step.outcome.samples > grown(LEAST_GROWTHS[0]))
+            .chain(least)
+            .find(|step| step.outcome.samples > now.samples)
+    }
+}
