@@ -8,6 +8,26 @@ use super::bounds::Bounds;
 use super::part::{PARALLEL, PIECE, Part};
 use super::partition::partition;
 use super::primitive::Primitive;
+use super::wide::Splitter;
+
+/// Splits by the surface area heuristic.
+pub(super) struct Binned {
+    /// Most primitives of a leaf.
+    pub leaf_size: usize,
+}
+
+impl Splitter for Binned {
+    fn leaf_size(&self) -> usize {
+        self.leaf_size
+    }
+
+    fn split<'a>(&self, part: Part<'a>) -> Result<(Part<'a>, Part<'a>), Part<'a>> {
+        match BinnedSplit::find(&part, self.leaf_size) {
+            Some(split) => Ok(split.apply(part)),
+            None => Err(part),
+        }
+    }
+}
 
 /// The cheapest split of a part at a border of bins.
 pub(super) struct BinnedSplit {

@@ -5,6 +5,9 @@
 pub enum Builder {
     /// At the median of the longest axis, at most 4 triangles a leaf: the baseline.
     Median,
+    /// Clusters along the Morton curve, the surface area heuristic over and in them: built in
+    /// half the time of `Balanced`, and traced nearly as fast.
+    Fast,
     /// Surface area heuristic over bins: the default.
     #[default]
     Balanced,
@@ -14,12 +17,13 @@ pub enum Builder {
 
 impl Builder {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Median, Self::Balanced, Self::None];
+    pub const ALL: [Self; 4] = [Self::Median, Self::Fast, Self::Balanced, Self::None];
 
     /// As in files and on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Median => "median",
+            Self::Fast => "fast",
             Self::Balanced => "balanced",
             Self::None => "none",
         }

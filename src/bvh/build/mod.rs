@@ -8,9 +8,11 @@
 mod binned;
 mod bounds;
 mod builder;
+mod clusters;
 mod collapse;
 mod fragment;
 mod median;
+mod morton;
 mod part;
 mod partition;
 mod primitive;
@@ -20,7 +22,8 @@ pub use builder::Builder;
 
 use super::layout::{MAX_DEPTH, Node, Tree};
 use crate::math::{Aabb, Vec3};
-use binned::BinnedSplit;
+use binned::Binned;
+use clusters::make_clustered_tree;
 use fragment::Fragment;
 use part::Part;
 use primitive::{Primitive, primitives};
@@ -51,10 +54,13 @@ pub(super) fn build<const W: usize>(
 ) -> Tree<W> {
     let mut primitives = primitives(positions, indices);
     let triangles = primitives.len();
-    let bounds = Part::new(&mut primitives).bounds.to_aabb();
+    let all = Part::new(&mut primitives);
+    let bounds = all.bounds.to_aabb();
+    let centroids = all.centroids;
     let mut fragment = match builder {
         Builder::None => leaves_only(&primitives),
         Builder::Median => make_tree(&mut primitives, &Halves),
+        Builder::Fast => make_clustered_tree(std::mem::take(&mut primitives), &centroids),
         Builder::Balanced => make_tree(&mut primitives, &Binned { leaf_size: W }),
     };
     drop(primitives);
@@ -97,23 +103,5 @@ impl Splitter for Halves {
 
     fn split<'a>(&self, part: Part<'a>) -> Result<(Part<'a>, Part<'a>), Part<'a>> {
         Err(part)
-    }
-}
-
-/// [`Builder::Balanced`].
-struct Binned {
-    leaf_size: usize,
-}
-
-impl Splitter for Binned {
-    fn leaf_size(&self) -> usize {
-        self.leaf_size
-    }
-
-    fn split<'a>(&self, part: Part<'a>) -> Result<(Part<'a>, Part<'a>), Part<'a>> {
-        match BinnedSplit::find(&part, self.leaf_size) {
-            Some(split) => Ok(split.apply(part)),
-            None => Err(part),
-        }
     }
 }

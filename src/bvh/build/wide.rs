@@ -19,8 +19,23 @@ pub(super) trait Splitter: Sync {
     /// Parts of at most so many primitives become leaves.
     fn leaf_size(&self) -> usize;
 
-    /// Cuts `part`, which is larger than a leaf. `None` leaves it to [`split_median`].
+    /// Parts of at most so many primitives are built by one thread, and collapsed.
+    fn small(&self) -> usize {
+        SMALL
+    }
+
+    /// Cuts `part`, which is larger than a leaf; gives it back where it should be halved.
     fn split<'a>(&self, part: Part<'a>) -> Result<(Part<'a>, Part<'a>), Part<'a>>;
+
+    /// Adds what becomes of a part that is no larger than a leaf; returns the place of its root.
+    fn grow_leaf<const W: usize>(
+        &self,
+        part: Part<'_>,
+        _depth: usize,
+        out: &mut Branches<W>,
+    ) -> usize {
+        out.add_leaf(part.bounds, part.primitives.iter().map(Primitive::index))
+    }
 }
 
 /// The whole tree; no node where one leaf is enough, nothing where there are no primitives.
@@ -42,7 +57,7 @@ fn make<const W: usize>(
     depth: usize,
     out: &mut Fragment<W>,
 ) -> ChildRef {
-    if part.len() > SMALL {
+    if part.len() > splitter.small() {
         make_large(part, splitter, depth, out)
     } else {
         make_small(part, splitter, out)
@@ -119,14 +134,14 @@ fn make_small<const W: usize>(
 }
 
 /// Adds the binary tree of `part`; returns the place of its root.
-fn grow<const W: usize>(
+pub(super) fn grow<const W: usize>(
     part: Part<'_>,
     splitter: &impl Splitter,
     depth: usize,
     out: &mut Branches<W>,
 ) -> usize {
     if part.len() <= splitter.leaf_size() {
-        return out.add_leaf(part.bounds, part.primitives.iter().map(Primitive::index));
+        return splitter.grow_leaf(part, depth, out);
     }
     let bounds = part.bounds;
     let (left, right) = split(part, splitter, depth < SMALL_SAH_DEPTH);
