@@ -36,7 +36,7 @@ pub(super) struct BinnedSplit {
     /// First bin of the right side.
     border: usize,
     /// Around the right and the left side.
-    sides: [Bounds; 2],
+    pub sides: [Bounds; 2],
     /// Of both sides together.
     pub cost: f64,
 }
@@ -54,7 +54,7 @@ impl BinnedSplit {
 
     fn find_among<const N: usize>(part: &Part<'_>, block_size: usize) -> Option<Self> {
         let binning = Binning::new::<N>(&part.centroids);
-        let bins = binning.fill::<N>(part.primitives);
+        let bins = binning.fill::<N>(part.primitives());
         let mut best: Option<Self> = None;
         for axis in 0..3 {
             let Some((cost, border)) = bins[axis].best_border(block_size) else {
@@ -74,31 +74,11 @@ impl BinnedSplit {
     }
 
     /// Does it.
-    pub fn apply(self, part: Part<'_>) -> (Part<'_>, Part<'_>) {
-        let Self {
-            binning,
-            axis,
-            border,
-            sides: [right_bounds, left_bounds],
-            ..
-        } = self;
-        let done = partition(part.primitives, |p| {
-            binning.bins_of(p)[axis] < border as u32
+    pub fn apply(self, mut part: Part<'_>) -> (Part<'_>, Part<'_>) {
+        let done = partition(part.primitives_mut(), |p| {
+            self.binning.bins_of(p)[self.axis] < self.border as u32
         });
-        let (left, right) = part.primitives.split_at_mut(done.left);
-        let [right_centroids, left_centroids] = done.centroids;
-        (
-            Part {
-                primitives: left,
-                bounds: left_bounds,
-                centroids: left_centroids,
-            },
-            Part {
-                primitives: right,
-                bounds: right_bounds,
-                centroids: right_centroids,
-            },
-        )
+        part.cut(done.left, self.sides, done.centroids)
     }
 }
 

@@ -30,6 +30,28 @@ impl Bounds {
         self.max = self.max.max(other.max);
     }
 
+    /// Around both.
+    #[inline(always)]
+    pub fn union(mut self, other: &Self) -> Self {
+        self.add(other);
+        self
+    }
+
+    /// What is in both.
+    #[inline(always)]
+    pub fn overlap(&self, other: &Self) -> Self {
+        Self {
+            min: self.min.max(other.min),
+            max: self.max.min(other.max),
+        }
+    }
+
+    /// Whether it holds no point.
+    #[inline(always)]
+    pub fn is_empty(&self) -> bool {
+        self.min.cmpgt(self.max).any()
+    }
+
     /// Half the surface, in f64 so that no finite box overflows; 0 where empty.
     #[inline(always)]
     pub fn half_area(&self) -> f64 {

@@ -11,13 +11,22 @@ pub enum Builder {
     /// Surface area heuristic over bins: the default.
     #[default]
     Balanced,
+    /// `Balanced` with spatial splits: large triangles are in several leaves. Takes several times
+    /// as long to build; pays where large and small triangles are mixed, as in interiors.
+    Quality,
     /// No tree: every ray meets every triangle.
     None,
 }
 
 impl Builder {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Median, Self::Fast, Self::Balanced, Self::None];
+    pub const ALL: [Self; 5] = [
+        Self::Median,
+        Self::Fast,
+        Self::Balanced,
+        Self::Quality,
+        Self::None,
+    ];
 
     /// As in files and on the command line.
     pub fn name(self) -> &'static str {
@@ -25,6 +34,7 @@ impl Builder {
             Self::Median => "median",
             Self::Fast => "fast",
             Self::Balanced => "balanced",
+            Self::Quality => "quality",
             Self::None => "none",
         }
     }

@@ -39,7 +39,7 @@ pub(super) fn make_clustered_tree<const W: usize>(
             Primitive::new(bounds.min, bounds.max, i as u32)
         })
         .collect();
-    make_tree(&mut boxes, &clusters)
+    make_tree(Part::new(&mut boxes), &clusters)
 }
 
 /// Primitives, cluster by cluster.
@@ -157,7 +157,7 @@ impl<const N: usize> Splitter for Clusters<N> {
         depth: usize,
         out: &mut Branches<W>,
     ) -> usize {
-        let mut members = self.members(part.primitives[0].index() as usize).to_vec();
+        let mut members = self.members(part.primitives()[0].index() as usize).to_vec();
         grow(
             Part::new(&mut members),
             &Binned { leaf_size: N },

@@ -8,6 +8,7 @@
 mod binned;
 mod bounds;
 mod builder;
+mod clip;
 mod clusters;
 mod collapse;
 mod fragment;
@@ -16,6 +17,7 @@ mod morton;
 mod part;
 mod partition;
 mod primitive;
+mod spatial;
 mod wide;
 
 pub use builder::Builder;
@@ -25,12 +27,17 @@ use crate::math::{Aabb, Vec3};
 use binned::Binned;
 use clusters::make_clustered_tree;
 use fragment::Fragment;
-use part::Part;
+use glam::Vec3A;
+use part::{Part, scan};
 use primitive::{Primitive, primitives};
+use spatial::Spatial;
 use wide::{Splitter, make_tree};
 
 /// Leaves of [`Builder::Median`] hold at most so many triangles.
 const MEDIAN_LEAF: usize = 4;
+
+/// How many more references to triangles [`Builder::Quality`] may make.
+const ROOM_PERCENT: usize = 25;
 
 /// Parts of up to so many primitives are built by one thread, and collapsed.
 const SMALL: usize = 1 << SMALL_BITS;
@@ -54,19 +61,27 @@ pub(super) fn build<const W: usize>(
 ) -> Tree<W> {
     let mut primitives = primitives(positions, indices);
     let triangles = primitives.len();
-    let all = Part::new(&mut primitives);
-    let bounds = all.bounds.to_aabb();
-    let centroids = all.centroids;
+    let (bounds, centroids) = scan(&primitives);
     let mut fragment = match builder {
         Builder::None => leaves_only(&primitives),
-        Builder::Median => make_tree(&mut primitives, &Halves),
+        Builder::Median => make_tree(Part::new(&mut primitives), &Halves),
         Builder::Fast => make_clustered_tree(std::mem::take(&mut primitives), &centroids),
-        Builder::Balanced => make_tree(&mut primitives, &Binned { leaf_size: W }),
+        Builder::Balanced => make_tree(Part::new(&mut primitives), &Binned { leaf_size: W }),
+        Builder::Quality => {
+            let room = primitives.len() * ROOM_PERCENT / 100;
+            let (count, filler) = (
+                primitives.len(),
+                Primitive::new(Vec3A::ZERO, Vec3A::ZERO, 0),
+            );
+            primitives.resize(count + room, filler);
+            let splitter = Spatial::new(positions, indices, &bounds, W);
+            make_tree(Part::with_room(&mut primitives, count), &splitter)
+        }
     };
     drop(primitives);
     fragment.nodes.shrink_to_fit();
     Tree {
-        bounds,
+        bounds: bounds.to_aabb(),
         blocks: fragment.blocks(positions, indices),
         nodes: fragment.nodes,
         triangles,
@@ -80,7 +95,7 @@ pub(super) fn build_over_boxes<const W: usize>(boxes: &[Aabb]) -> (Vec<Node<W>>,
         .filter(|(_, bounds)| !bounds.is_empty())
         .map(|(i, bounds)| Primitive::new(bounds.min.into(), bounds.max.into(), i))
         .collect();
-    let fragment = make_tree(&mut primitives, &Binned { leaf_size: 1 });
+    let fragment = make_tree(Part::new(&mut primitives), &Binned { leaf_size: 1 });
     (fragment.nodes, fragment.order)
 }
 

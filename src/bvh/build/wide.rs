@@ -34,18 +34,15 @@ pub(super) trait Splitter: Sync {
         _depth: usize,
         out: &mut Branches<W>,
     ) -> usize {
-        out.add_leaf(part.bounds, part.primitives.iter().map(Primitive::index))
+        out.add_leaf(part.bounds, part.primitives().iter().map(Primitive::index))
     }
 }
 
 /// The whole tree; no node where one leaf is enough, nothing where there are no primitives.
-pub(super) fn make_tree<const W: usize>(
-    primitives: &mut [Primitive],
-    splitter: &impl Splitter,
-) -> Fragment<W> {
+pub(super) fn make_tree<const W: usize>(part: Part<'_>, splitter: &impl Splitter) -> Fragment<W> {
     let mut fragment = Fragment::new();
-    if !primitives.is_empty() {
-        make(Part::new(primitives), splitter, 0, &mut fragment);
+    if part.len() > 0 {
+        make(part, splitter, 0, &mut fragment);
     }
     fragment
 }
