@@ -8,77 +8,92 @@
 
 use std::ops::Range;
 
-use super::primitive::{Bounds, Part};
+use super::bounds::Bounds;
 
 /// A node or leaf of the binary tree.
 pub(super) struct Branch<const W: usize> {
     pub bounds: Bounds,
-    /// The primitives below, counted from the first of the subtree.
+    /// The primitives below, as places in [`Branches::order`].
     pub range: Range<usize>,
     /// Places in [`Branches`]; `None` in a leaf.
     children: Option<[usize; 2]>,
+    /// Leaves below, but no more than `W`.
+    leaves: usize,
     /// How many of a wide node's `W` slots go to the first child.
     own_slots: usize,
     /// Least cost of everything below when it may take up to `i + 1` slots of a node above.
-    costs: [f64; W],
+    costs: [f32; W],
     /// How many of `i + 1` slots go to the first child; 0 where one slot less does as well.
     slots: [u8; W],
 }
 
-/// The binary tree of a small part.
+/// The binary tree of a small part; children come before their parents.
 pub(super) struct Branches<const W: usize> {
     branches: Vec<Branch<W>>,
+    /// Numbers of the primitives, leaf by leaf.
+    pub order: Vec<u32>,
+    /// What areas are multiplied by to become costs.
+    scale: f64,
 }
 
 impl<const W: usize> Branches<W> {
-    /// Splits `part` with `split` (told the depth) until `leaf_size` or fewer are left.
-    pub fn grow(
-        part: Part<'_>,
-        leaf_size: usize,
-        split: &impl for<'p> Fn(Part<'p>, usize) -> (Part<'p>, Part<'p>),
-    ) -> Self {
-        let mut tree = Self {
-            branches: Vec::with_capacity(1 + 4 * part.primitives.len() / leaf_size),
-        };
-        tree.add(part, 0, 0, leaf_size, split);
-        tree
+    /// Without branches; `bounds` is around all that will come.
+    pub fn new(bounds: &Bounds) -> Self {
+        // Areas as shares of the whole are at most 1, as f32 wants it.
+        let area = bounds.half_area();
+        Self {
+            branches: Vec::new(),
+            order: Vec::new(),
+            scale: if area > 0.0 { 1.0 / area } else { 0.0 },
+        }
     }
 
-    /// The top.
+    /// The branch that was added last: the top.
     pub fn root(&self) -> &Branch<W> {
         &self.branches[self.branches.len() - 1]
     }
 
-    fn add(
-        &mut self,
-        part: Part<'_>,
-        first: usize,
-        depth: usize,
-        leaf_size: usize,
-        split: &impl for<'p> Fn(Part<'p>, usize) -> (Part<'p>, Part<'p>),
-    ) -> usize {
-        let bounds = part.bounds;
-        let range = first..first + part.primitives.len();
-        let branch = if range.len() <= leaf_size {
-            Branch::leaf(bounds, range)
-        } else {
-            let (left, right) = split(part, depth);
-            let middle = first + left.primitives.len();
-            let children = [
-                self.add(left, first, depth + 1, leaf_size, split),
-                self.add(right, middle, depth + 1, leaf_size, split),
-            ];
-            let [left, right] = children.map(|i| &self.branches[i].costs);
-            let (costs, slots, own_slots) = share_slots(bounds.half_area(), left, right);
-            Branch {
-                bounds,
-                range,
-                children: Some(children),
-                own_slots,
-                costs,
-                slots,
-            }
-        };
+    /// How many leaves there are.
+    pub fn leaf_count(&self) -> usize {
+        self.branches.len().div_ceil(2)
+    }
+
+    /// Adds a leaf of the primitives with those numbers; returns its place.
+    pub fn add_leaf(&mut self, bounds: Bounds, numbers: impl Iterator<Item = u32>) -> usize {
+        let first = self.order.len();
+        self.order.extend(numbers);
+        // All leaves are tested as a whole, so each costs its area however it is placed.
+        let cost = (bounds.half_area() * self.scale) as f32;
+        self.add(Branch {
+            bounds,
+            range: first..self.order.len(),
+            children: None,
+            leaves: 1,
+            own_slots: 0,
+            costs: [cost; W],
+            slots: [0; W],
+        })
+    }
+
+    /// Adds a node over two branches that are there, the last two subtrees; returns its place.
+    pub fn add_node(&mut self, bounds: Bounds, children: [usize; 2]) -> usize {
+        let [left, right] = children.map(|i| &self.branches[i]);
+        let range = left.range.start..right.range.end;
+        let leaves = (left.leaves + right.leaves).min(W);
+        let area = (bounds.half_area() * self.scale) as f32;
+        let (costs, slots, own_slots) = share_slots(area, left, right);
+        self.add(Branch {
+            bounds,
+            range,
+            children: Some(children),
+            leaves,
+            own_slots,
+            costs,
+            slots,
+        })
+    }
+
+    fn add(&mut self, branch: Branch<W>) -> usize {
         self.branches.push(branch);
         self.branches.len() - 1
     }
@@ -110,48 +125,45 @@ impl<const W: usize> Branches<W> {
 }
 
 impl<const W: usize> Branch<W> {
-    /// All leaves are tested as a whole, so each costs its area however it is placed.
-    fn leaf(bounds: Bounds, range: Range<usize>) -> Self {
-        Self {
-            bounds,
-            range,
-            children: None,
-            own_slots: 0,
-            costs: [bounds.half_area(); W],
-            slots: [0; W],
-        }
-    }
-
     /// Whether it holds primitives rather than children.
     pub fn is_leaf(&self) -> bool {
         self.children.is_none()
     }
 }
 
-/// Costs and slots of a branch of that area over children with those costs, and the share of
-/// the first child where the branch is a wide node itself.
+/// Costs and slots of a branch of that area over two children, and the share of the first
+/// child where the branch is a wide node itself.
 fn share_slots<const W: usize>(
-    area: f64,
-    left: &[f64; W],
-    right: &[f64; W],
-) -> ([f64; W], [u8; W], usize) {
+    area: f32,
+    left: &Branch<W>,
+    right: &Branch<W>,
+) -> ([f32; W], [u8; W], usize) {
+    // More slots than leaves are of no use.
     let best_share = |count: usize| {
-        (1..count)
-            .map(|share| (left[share - 1] + right[count - share - 1], share))
-            .fold((f64::INFINITY, 1), |best, next| {
+        let least = count.saturating_sub(right.leaves).max(1);
+        let most = left.leaves.min(count - 1);
+        (least..=most)
+            .map(|share| {
+                (
+                    left.costs[share - 1] + right.costs[count - share - 1],
+                    share,
+                )
+            })
+            .fold((f32::INFINITY, 1), |best, next| {
                 if next.0 < best.0 { next } else { best }
             })
     };
-    let (below, own_slots) = best_share(W);
+    let leaves = (left.leaves + right.leaves).min(W);
+    let (below, own_slots) = best_share(leaves);
     let mut costs = [below + area; W];
     let mut slots = [0; W];
     for count in 2..=W {
-        let (cost, share) = if count == W {
-            (below, own_slots)
-        } else {
-            best_share(count)
-        };
         costs[count - 1] = costs[count - 2];
+        let (cost, share) = match count {
+            _ if count > leaves => continue,
+            _ if count == leaves => (below, own_slots),
+            _ => best_share(count),
+        };
         if cost < costs[count - 1] {
             costs[count - 1] = cost;
             slots[count - 1] = share as u8;
