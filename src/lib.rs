@@ -35,6 +35,8 @@
 //! | [`integrate`] | a ray | the radiance that comes back along it |
 //! | [`render`] | a prepared scene, a camera, settings | a film |
 //! | [`output`] | pixels | files |
+//! | [`bench`] | triangles, rays, scenes | how long they take |
+//! | [`report`] | measurements | fits, plots |
 //!
 //! The program (`main.rs` and `cli/`) is thin: it parses arguments, runs one command, prints, and turns errors
 //! into exit statuses. The library never prints.
@@ -97,6 +99,10 @@ pub mod integrate;
 pub mod render;
 
 pub mod output;
+
+pub mod bench;
+
+pub mod report;
 
 /// Compiles and runs the example of the README.
 #[cfg(doctest)]

@@ -43,14 +43,13 @@ pub struct JobError {
 }
 
 impl Failure {
-    /// Wrong arguments to the subcommand of this name.
+    /// Wrong arguments to the subcommand of this name, such as `render` or `bench bvh`.
     pub fn usage(subcommand: &str, message: impl Display) -> Self {
         let mut program = Arguments::command();
         program.build();
-        let mut command = program
-            .find_subcommand(subcommand)
-            .cloned()
-            .unwrap_or(program);
+        let mut command = subcommand.split(' ').fold(program, |command, name| {
+            command.find_subcommand(name).cloned().unwrap_or(command)
+        });
         Self::Usage(command.error(ErrorKind::ValueValidation, printable(message)))
     }
 

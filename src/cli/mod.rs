@@ -4,6 +4,7 @@
 //! job failed, 2 the arguments are wrong.
 
 mod arguments;
+mod bench;
 mod console;
 mod failure;
 mod info;
@@ -17,6 +18,7 @@ mod process;
 mod progress;
 mod render;
 mod stats;
+mod table;
 mod targets;
 
 use clap::{Parser, Subcommand};
@@ -41,6 +43,7 @@ pub struct Arguments {
 enum Command {
     Render(Box<options::RenderOptions>),
     Info(info::InfoOptions),
+    Bench(bench::BenchOptions),
 }
 
 /// Does what the arguments say.
@@ -48,5 +51,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.command {
         Command::Render(arguments) => render::run(arguments),
         Command::Info(arguments) => info::run(arguments),
+        Command::Bench(arguments) => bench::run(arguments),
     }
 }

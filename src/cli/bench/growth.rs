@@ -1,0 +1,273 @@
+//! What `bench bvh --scaling` measured, as charts, tables, CSV and fitted growth.
+
+use halfshade::bench::{Generated, RayReport, TreeReport};
+use halfshade::report::plot::{Chart, Guide, Line, Marker, Point, Series, Style};
+use halfshade::report::power_law::PowerLaw;
+use serde::Serialize;
+
+use crate::cli::table::{Table, number};
+
+/// The unit of what falls, and not grows, with the number of triangles.
+const RATE: &str = "million rays a second";
+
+/// Something that is measured: one chart, one column.
+struct Quantity {
+    name: String,
+    unit: &'static str,
+    /// Median, least and greatest.
+    value: Box<dyn Fn(&TreeReport) -> [f64; 3]>,
+}
+
+/// Build time and bytes, then the rate of every ray set.
+fn quantities(reports: &[TreeReport]) -> Vec<Quantity> {
+    let mut quantities = vec![
+        Quantity {
+            name: "build time".to_owned(),
+            unit: "seconds",
+            value: Box::new(build_seconds),
+        },
+        Quantity {
+            name: "memory".to_owned(),
+            unit: "bytes",
+            value: Box::new(|r| [r.bytes as f64; 3]),
+        },
+    ];
+    let sets = reports.first().map_or(&[][..], |report| &report.rays);
+    quantities.extend(sets.iter().enumerate().map(|(set, rays)| Quantity {
+        name: format!("{} rays", rays.name),
+        unit: RATE,
+        value: Box::new(move |report| rates(&report.rays[set])),
+    }));
+    quantities
+}
+
+/// By processor time where one thread builds, and it is known; by wall time otherwise.
+fn build_seconds(report: &TreeReport) -> [f64; 3] {
+    let r = report;
+    match (
+        r.build_cpu_seconds,
+        r.build_cpu_seconds_min,
+        r.build_cpu_seconds_max,
+    ) {
+        (Some(median), Some(min), Some(max)) if r.threads == 1 => [median, min, max],
+        _ => [r.build_seconds, r.build_seconds_min, r.build_seconds_max],
+    }
+}
+
+/// Millions of rays in a second by processor time, or by wall time where that is not known.
+fn rates(rays: &RayReport) -> [f64; 3] {
+    let by_wall = [rays.seconds, rays.seconds_min, rays.seconds_max].map(Some);
+    let by_processor = [rays.cpu_seconds, rays.cpu_seconds_min, rays.cpu_seconds_max]
+        .map(|seconds| seconds.map(|s| s / rays.threads as f64));
+    let seconds = match by_processor {
+        [Some(_), ..] => by_processor,
+        _ => by_wall,
+    };
+    let [median, min, max] = seconds.map(|s| rays.count as f64 / s.unwrap_or(f64::NAN) / 1e6);
+    [median, max, min]
+}
+
+/// One mesh kind with one builder, by size.
+fn curves(reports: &[TreeReport]) -> Vec<(&str, &'static str, Vec<&TreeReport>)> {
+    let mut curves: Vec<(&str, &'static str, Vec<&TreeReport>)> = Vec::new();
+    for report in reports {
+        let (mesh, builder) = (report.mesh.as_str(), report.builder);
+        match curves.iter_mut().find(|c| (c.0, c.1) == (mesh, builder)) {
+            Some((.., curve)) => curve.push(report),
+            None => curves.push((mesh, builder, vec![report])),
+        }
+    }
+    curves
+}
+
+/// A chart for every quantity.
+pub fn charts(reports: &[TreeReport]) -> Vec<Chart> {
+    let charts = quantities(reports).into_iter().zip('a'..);
+    charts
+        .map(|(q, letter)| chart(reports, &q, letter))
+        .collect()
+}
+
+fn chart(reports: &[TreeReport], quantity: &Quantity, letter: char) -> Chart {
+    let mut builders: Vec<&str> = Vec::new();
+    let mut series = Vec::new();
+    for (mesh, builder, curve) in curves(reports) {
+        if !builders.contains(&builder) {
+            builders.push(builder);
+        }
+        let is_first_kind = mesh == Generated::ALL[0].name();
+        let point = |report: &&TreeReport| {
+            let [y, low, high] = (quantity.value)(report);
+            Point {
+                x: report.triangles as f64,
+                y,
+                range: Some((low, high)),
+            }
+        };
+        series.push(Series {
+            name: format!("{builder}, {mesh}"),
+            style: Style {
+                color: builders.iter().position(|b| *b == builder).unwrap_or(0),
+                marker: if is_first_kind {
+                    Marker::Disk
+                } else {
+                    Marker::Ring
+                },
+                line: if is_first_kind {
+                    Line::Solid
+                } else {
+                    Line::Dashed
+                },
+            },
+            points: curve.iter().map(point).collect(),
+        });
+    }
+    // A little below everything.
+    let per_triangle = |r: &TreeReport| (quantity.value)(r)[1] / r.triangles as f64;
+    let least = reports.iter().map(per_triangle).reduce(f64::min);
+    Chart {
+        title: format!("({letter}) {}", quantity.name),
+        x: "triangles".to_owned(),
+        y: quantity.unit.to_owned(),
+        series,
+        guides: least
+            .filter(|_| quantity.unit != RATE)
+            .map(|least| Guide {
+                name: "linear".to_owned(),
+                slope: 1.0,
+                through: (1.0, 0.6 * least),
+            })
+            .into_iter()
+            .collect(),
+    }
+}
+
+/// How one quantity grows, for one kind of mesh and one builder.
+#[derive(Serialize)]
+pub struct Growth {
+    quantity: String,
+    mesh: String,
+    builder: &'static str,
+    exponent: f64,
+    standard_error: f64,
+}
+
+/// Of every quantity, kind of mesh and builder; none where there are too few sizes to fit.
+pub fn growths(reports: &[TreeReport]) -> Vec<Growth> {
+    let mut growths = Vec::new();
+    for quantity in quantities(reports) {
+        for (mesh, builder, curve) in curves(reports) {
+            let points: Vec<(f64, f64)> = curve
+                .iter()
+                .map(|report| (report.triangles as f64, (quantity.value)(report)[0]))
+                .collect();
+            if let Some(fit) = PowerLaw::fit(&points) {
+                growths.push(Growth {
+                    quantity: quantity.name.clone(),
+                    mesh: mesh.to_owned(),
+                    builder,
+                    exponent: fit.exponent,
+                    standard_error: fit.standard_error,
+                });
+            }
+        }
+    }
+    growths
+}
+
+/// The exponents.
+pub fn growth_table(growth: &[Growth]) -> Table {
+    let mut table = Table::new(&["quantity", "mesh", "builder", "exponent", "standard error"]);
+    for growth in growth {
+        table.row(vec![
+            growth.quantity.clone(),
+            growth.mesh.clone(),
+            growth.builder.to_owned(),
+            format!("{:.3}", growth.exponent),
+            format!("{:.3}", growth.standard_error),
+        ]);
+    }
+    table
+}
+
+/// The medians.
+pub fn table(reports: &[TreeReport]) -> Table {
+    let sets = reports.first().map_or(&[][..], |report| &report.rays);
+    let rates_of = sets.iter().map(|set| format!("{} Mrays/s", set.name));
+    let mut head: Vec<String> = ["mesh", "triangles", "builder", "threads", "build s"]
+        .into_iter()
+        .chain(["bytes/triangle", "SAH cost"])
+        .map(str::to_owned)
+        .collect();
+    head.extend(rates_of);
+    let head: Vec<&str> = head.iter().map(String::as_str).collect();
+    let mut table = Table::new(&head);
+    for report in reports {
+        let mut row = vec![
+            report.mesh.clone(),
+            report.triangles.to_string(),
+            report.builder.to_owned(),
+            report.threads.to_string(),
+            number(build_seconds(report)[0]),
+            number(report.bytes_per_triangle),
+            number(report.sah_cost),
+        ];
+        row.extend(report.rays.iter().map(|rays| number(rates(rays)[0])));
+        table.row(row);
+    }
+    table
+}
+
+/// Every number, for other programs; columns for what is not known are empty.
+pub fn csv(reports: &[TreeReport]) -> String {
+    let mut text = "mesh,triangles,builder,threads,build_seconds,build_seconds_min,\
+                    build_seconds_max,build_cpu_seconds,bytes,bytes_per_triangle,sah_cost,nodes,\
+                    leaves,depth"
+        .to_owned();
+    for set in reports.first().map_or(&[][..], |report| &report.rays) {
+        for column in [
+            "rays",
+            "seconds",
+            "cpu_seconds",
+            "mrays_per_second",
+            "mrays_per_cpu_second",
+            "nodes_per_ray",
+            "leaves_per_ray",
+        ] {
+            text += &format!(",{}_{column}", set.name);
+        }
+    }
+    let known = |value: Option<f64>| value.map_or_else(String::new, |v| v.to_string());
+    for r in reports {
+        text += &format!(
+            "\n{},{},{},{},{},{},{},{},{},{},{},{},{},{}",
+            r.mesh,
+            r.triangles,
+            r.builder,
+            r.threads,
+            r.build_seconds,
+            r.build_seconds_min,
+            r.build_seconds_max,
+            known(r.build_cpu_seconds),
+            r.bytes,
+            r.bytes_per_triangle,
+            r.sah_cost,
+            r.nodes,
+            r.leaves,
+            r.depth
+        );
+        for rays in &r.rays {
+            text += &format!(
+                ",{},{},{},{},{},{},{}",
+                rays.count,
+                rays.seconds,
+                known(rays.cpu_seconds),
+                rays.mrays_per_second,
+                known(rays.mrays_per_cpu_second),
+                rays.nodes_per_ray,
+                rays.leaves_per_ray
+            );
+        }
+    }
+    text + "\n"
+}
