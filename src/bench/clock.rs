@@ -81,10 +81,19 @@ impl Spread {
             max,
         }
     }
+
+    /// `factor` times each.
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self {
+            median: factor * self.median,
+            min: factor * self.min,
+            max: factor * self.max,
+        }
+    }
 }
 
 /// Repeated measurements of one thing, seconds.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Timing {
     /// On the clock on the wall.
     pub wall: Spread,
@@ -99,6 +108,21 @@ impl Timing {
         Self {
             wall: Spread::of(repeats.iter().map(|repeat| repeat.wall)),
             processor: processor.map(Spread::of),
+        }
+    }
+
+    /// Of work whose threads were busy all the time, had each had a processor to itself: the
+    /// processor time by thread, or the wall time where that is not known.
+    pub fn undisturbed(&self, threads: usize) -> Spread {
+        let processor = self.processor.map(|s| s.scaled(1.0 / threads as f64));
+        processor.unwrap_or(self.wall)
+    }
+
+    /// Of `factor` times as much of the same.
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self {
+            wall: self.wall.scaled(factor),
+            processor: self.processor.map(|spread| spread.scaled(factor)),
         }
     }
 }

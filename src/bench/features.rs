@@ -57,12 +57,8 @@ pub struct FeatureCell {
     pub prepare_seconds: f64,
     /// Wall time of the whole picture.
     pub seconds: f64,
-    /// The least of the repeats.
-    pub seconds_min: f64,
-    /// The greatest of the repeats.
-    pub seconds_max: f64,
-    /// Processor time, all threads; `None` where the system does not say.
-    pub cpu_seconds: Option<f64>,
+    /// All that is known of the time.
+    pub time: Timing,
     /// `seconds`, in those of the first picture of the table.
     pub ratio: f64,
     /// Rays of the whole picture, all kinds.
@@ -272,8 +268,8 @@ impl<'a> Studio<'a> {
         let measured = runs.first().map_or(full, |run| run.samples);
         let scale = full as f64 / measured as f64;
         let elapsed: Vec<Elapsed> = runs.iter().map(|run| run.elapsed).collect();
-        let timing = Timing::of(&elapsed);
-        let rays = runs.first().map_or(0, |run| run.rays) as f64;
+        let time = Timing::of(&elapsed).scaled(scale);
+        let rays = runs.first().map_or(0, |run| run.rays) as f64 * scale;
         let tree = &self.trees[variant.tree];
         FeatureCell {
             samples: self.settings_of(variant).sampling.samples_per_pixel(),
@@ -281,13 +277,11 @@ impl<'a> Studio<'a> {
             builder: tree.builder.name(),
             threads: self.pools[variant.pool].current_num_threads(),
             prepare_seconds: tree.prepare_seconds[variant.pool],
-            seconds: timing.wall.median * scale,
-            seconds_min: timing.wall.min * scale,
-            seconds_max: timing.wall.max * scale,
-            cpu_seconds: timing.processor.map(|spread| spread.median * scale),
+            seconds: time.wall.median,
+            time,
             ratio: 1.0,
-            rays: (rays * scale).round() as u64,
-            mrays_per_second: rays / timing.wall.median / 1e6,
+            rays: rays.round() as u64,
+            mrays_per_second: rays / time.wall.median / 1e6,
             measured_share: 1.0 / scale,
         }
     }

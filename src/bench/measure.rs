@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use serde::Serialize;
 
-use crate::bvh::{Builder, Bvh, TraversalCounts};
+use crate::bvh::{Builder, Bvh, TraversalCounts, Width};
 use crate::math::Ray;
 
 use super::{Elapsed, Query, RaySet, Stopwatch, Timing, Triangles};
@@ -22,8 +22,10 @@ const MOST_SMALL_BUILDS: usize = 30;
 /// What is compared, and how often it is measured.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Each builds a tree.
+    /// Each builds a tree,
     pub builders: Vec<Builder>,
+    /// in each of these widths that the processor can do.
+    pub widths: Vec<Width>,
     /// Each number of threads builds and traces.
     pub threads: Vec<usize>,
     /// Times that everything is measured; small trees are built more often.
@@ -39,20 +41,14 @@ pub struct TreeReport {
     pub triangles: usize,
     /// The name of the builder.
     pub builder: &'static str,
+    /// The name of the width that the tree is laid out for.
+    pub width: &'static str,
     /// Threads that built and traced.
     pub threads: usize,
     /// Wall time of the build.
     pub build_seconds: f64,
-    /// The least of the repeats.
-    pub build_seconds_min: f64,
-    /// The greatest of the repeats.
-    pub build_seconds_max: f64,
-    /// Processor time of the build, all threads; `None` where the system does not say.
-    pub build_cpu_seconds: Option<f64>,
-    /// The least of the repeats.
-    pub build_cpu_seconds_min: Option<f64>,
-    /// The greatest of the repeats.
-    pub build_cpu_seconds_max: Option<f64>,
+    /// All that is known of the time of the build.
+    pub build: Timing,
     /// Bytes of the tree, its own copies of triangles included.
     pub bytes: usize,
     /// The same for each triangle of the mesh.
@@ -82,18 +78,10 @@ pub struct RayReport {
     pub count: usize,
     /// Threads that traced.
     pub threads: usize,
-    /// Wall time, median.
+    /// Wall time.
     pub seconds: f64,
-    /// The least of the repeats.
-    pub seconds_min: f64,
-    /// The greatest of the repeats.
-    pub seconds_max: f64,
-    /// Processor time of all threads, median; `None` where the system does not say.
-    pub cpu_seconds: Option<f64>,
-    /// The least of the repeats.
-    pub cpu_seconds_min: Option<f64>,
-    /// The greatest of the repeats.
-    pub cpu_seconds_max: Option<f64>,
+    /// All that is known of the time.
+    pub time: Timing,
     /// Millions of rays in a second of wall time.
     pub mrays_per_second: f64,
     /// Millions of rays in a second in which every thread has a processor to itself: what
@@ -111,8 +99,20 @@ pub struct RayReport {
     pub digest: String,
 }
 
-/// Builds and traces everything of `plan` over `triangles`; a report for each builder and number
-/// of threads.
+/// As on the command line and in reports.
+pub fn width_name(width: Width) -> &'static str {
+    match width {
+        Width::Portable => "portable",
+        Width::Avx2 => "avx2",
+        Width::Avx512 => "avx512",
+    }
+}
+
+/// A way to build a tree.
+type Kind = (Builder, Width);
+
+/// Builds and traces everything of `plan` over `triangles`; a report for each builder, width and
+/// number of threads.
 ///
 /// # Errors
 /// Where threads cannot be started.
@@ -127,7 +127,14 @@ pub fn measure(
         .iter()
         .map(|&threads| ThreadPoolBuilder::new().num_threads(threads).build())
         .collect::<Result<_, _>>()?;
-    let (trees, build_times) = build_all(triangles, plan, &pools);
+    let widths = Width::available();
+    let widths = || plan.widths.iter().filter(|width| widths.contains(width));
+    let kinds = plan
+        .builders
+        .iter()
+        .flat_map(|&b| widths().map(move |&w| (b, w)));
+    let kinds: Vec<Kind> = kinds.collect();
+    let (trees, build_times) = build_all(triangles, plan, &kinds, &pools);
     let surveys: Vec<Vec<Survey>> = trees
         .iter()
         .map(|tree| sets.iter().map(|set| Survey::of(tree, set)).collect())
@@ -135,45 +142,52 @@ pub fn measure(
     let trace_times = trace_all(&trees, sets, plan, &pools);
 
     let mut reports = Vec::new();
-    for (b, tree) in trees.iter().enumerate() {
+    for (k, tree) in trees.iter().enumerate() {
         for (t, &threads) in plan.threads.iter().enumerate() {
-            let builder = plan.builders[b];
-            let timing = Timing::of(&build_times[b][t]);
-            let mut report = tree_report(mesh, triangles, builder, threads, tree, timing);
-            report.rays = (0..sets.len())
-                .map(|s| ray_report(&sets[s], threads, &surveys[b][s], &trace_times[b][t][s]))
-                .collect();
-            reports.push(report);
+            let rays =
+                |s: usize| ray_report(&sets[s], threads, &surveys[k][s], &trace_times[k][t][s]);
+            let build = Timing::of(&build_times[k][t]);
+            reports.push(TreeReport {
+                mesh: mesh.to_owned(),
+                threads,
+                rays: (0..sets.len()).map(rays).collect(),
+                ..tree_report(triangles, kinds[k], tree, build)
+            });
         }
     }
     Ok(reports)
 }
 
-/// By builder, number of threads and repeat.
+/// By kind, number of threads and repeat.
 type BuildTimes = Vec<Vec<Vec<Elapsed>>>;
 
-fn build_all(triangles: &Triangles, plan: &Plan, pools: &[ThreadPool]) -> (Vec<Bvh>, BuildTimes) {
-    let mut trees: Vec<Option<Bvh>> = plan.builders.iter().map(|_| None).collect();
-    let mut times = vec![vec![Vec::new(); pools.len()]; plan.builders.len()];
+fn build_all(
+    triangles: &Triangles,
+    plan: &Plan,
+    kinds: &[Kind],
+    pools: &[ThreadPool],
+) -> (Vec<Bvh>, BuildTimes) {
+    let Triangles { positions, indices } = triangles;
+    let mut trees: Vec<Option<Bvh>> = kinds.iter().map(|_| None).collect();
+    let mut times = vec![vec![Vec::new(); pools.len()]; kinds.len()];
     // Trees of few triangles are built in less time than threads take to wake.
-    let for_small = (SMALL_BUILDS / triangles.indices.len().max(1)).min(MOST_SMALL_BUILDS);
+    let for_small = (SMALL_BUILDS / indices.len().max(1)).min(MOST_SMALL_BUILDS);
     for _ in 0..plan.repeats.max(1).max(for_small) {
         for (t, pool) in pools.iter().enumerate() {
-            for (b, &builder) in plan.builders.iter().enumerate() {
-                // Not two at a time of the same builder.
-                trees[b] = None;
+            for (k, &(builder, width)) in kinds.iter().enumerate() {
+                // Not two at a time of the same kind.
+                trees[k] = None;
                 let stopwatch = Stopwatch::start();
-                let tree =
-                    pool.install(|| Bvh::build(&triangles.positions, &triangles.indices, builder));
-                times[b][t].push(stopwatch.read());
-                trees[b] = Some(tree);
+                let tree = pool.install(|| Bvh::build_with(positions, indices, builder, width));
+                times[k][t].push(stopwatch.read());
+                trees[k] = tree;
             }
         }
     }
     (trees.into_iter().flatten().collect(), times)
 }
 
-/// By builder, number of threads, ray set and repeat.
+/// By kind, number of threads, ray set and repeat.
 type TraceTimes = Vec<Vec<Vec<Vec<Elapsed>>>>;
 
 fn trace_all(trees: &[Bvh], sets: &[RaySet], plan: &Plan, pools: &[ThreadPool]) -> TraceTimes {
@@ -181,8 +195,8 @@ fn trace_all(trees: &[Bvh], sets: &[RaySet], plan: &Plan, pools: &[ThreadPool]) 
     for _ in 0..plan.repeats.max(1) {
         for (s, set) in sets.iter().enumerate() {
             for (t, pool) in pools.iter().enumerate() {
-                for (b, tree) in trees.iter().enumerate() {
-                    times[b][t][s].push(pool.install(|| trace(tree, set)));
+                for (k, tree) in trees.iter().enumerate() {
+                    times[k][t][s].push(pool.install(|| trace(tree, set)));
                 }
             }
         }
@@ -264,27 +278,23 @@ impl Survey {
     }
 }
 
+/// All but the mesh's name, the number of threads and the rays.
 fn tree_report(
-    mesh: &str,
     triangles: &Triangles,
-    builder: Builder,
-    threads: usize,
+    (builder, width): Kind,
     tree: &Bvh,
     build: Timing,
 ) -> TreeReport {
     let stats = tree.stats();
     let bytes = tree.memory_bytes();
     TreeReport {
-        mesh: mesh.to_owned(),
+        mesh: String::new(),
         triangles: triangles.indices.len(),
         builder: builder.name(),
-        threads,
+        width: width_name(width),
+        threads: 0,
         build_seconds: build.wall.median,
-        build_seconds_min: build.wall.min,
-        build_seconds_max: build.wall.max,
-        build_cpu_seconds: build.processor.map(|spread| spread.median),
-        build_cpu_seconds_min: build.processor.map(|spread| spread.min),
-        build_cpu_seconds_max: build.processor.map(|spread| spread.max),
+        build,
         bytes,
         bytes_per_triangle: bytes as f64 / triangles.indices.len().max(1) as f64,
         sah_cost: stats.sah_cost,
@@ -296,7 +306,7 @@ fn tree_report(
 }
 
 fn ray_report(set: &RaySet, threads: usize, survey: &Survey, repeats: &[Elapsed]) -> RayReport {
-    let Timing { wall, processor } = Timing::of(repeats);
+    let time = Timing::of(repeats);
     let count = set.rays.len();
     let rate = |seconds: f64| match seconds {
         0.0 => 0.0,
@@ -309,14 +319,12 @@ fn ray_report(set: &RaySet, threads: usize, survey: &Survey, repeats: &[Elapsed]
         kind: set.query,
         count,
         threads,
-        seconds: wall.median,
-        seconds_min: wall.min,
-        seconds_max: wall.max,
-        cpu_seconds: processor.map(|spread| spread.median),
-        cpu_seconds_min: processor.map(|spread| spread.min),
-        cpu_seconds_max: processor.map(|spread| spread.max),
-        mrays_per_second: rate(wall.median),
-        mrays_per_cpu_second: processor.map(|spread| rate(spread.median / threads as f64)),
+        seconds: time.wall.median,
+        time,
+        mrays_per_second: rate(time.wall.median),
+        mrays_per_cpu_second: time
+            .processor
+            .map(|spread| rate(spread.median / threads as f64)),
         nodes_per_ray: per_ray(survey.counts.nodes),
         leaves_per_ray: per_ray(survey.counts.leaves),
         triangles_per_ray: per_ray(survey.counts.triangles),

@@ -16,7 +16,7 @@ mod triangles;
 pub use clock::{Elapsed, Spread, Stopwatch, Timing, processor_seconds};
 pub use features::{FeatureCell, FeaturePlan, FeatureReport, bench_features};
 pub use generated::Generated;
-pub use measure::{Plan, RayReport, TreeReport, measure};
+pub use measure::{Plan, RayReport, TreeReport, measure, width_name};
 pub use own_rays::own_rays;
 pub use ray_file::{read_rays, write_hits, write_rays};
 pub use ray_set::{Query, RaySet};

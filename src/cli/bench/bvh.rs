@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use halfshade::bench::{
-    Plan, Query, RaySet, TreeReport, Triangles, measure, own_rays, read_rays, write_hits,
-    write_rays,
+    Plan, Query, RaySet, TreeReport, Triangles, measure, own_rays, read_rays, width_name,
+    write_hits, write_rays,
 };
-use halfshade::bvh::{Builder, Bvh};
+use halfshade::bvh::{Builder, Bvh, Width};
 use halfshade::import::{SceneOptions, import};
 use halfshade::output::check_writable;
 
@@ -24,9 +25,10 @@ const EXAMPLES: &str = "\
 Examples:
   halfshade bench bvh bunny.obj
       all builders, on rays of its own: primary, shadow, diffuse, random
-  halfshade bench bvh a.obj b.glb --builder balanced,median --threads 1,2 --json
-  halfshade bench bvh bunny.obj --rays b_primary.ray --rays b_shadow.ray:any
-  halfshade bench bvh bunny.obj --rays b_primary.ray --dump-hits hits.bin
+  halfshade bench bvh bunny.obj scenes/house.toml --builder balanced,median --threads 1,2 --json
+  halfshade bench bvh bunny.obj --width portable --save-rays bunny
+  halfshade bench bvh bunny.obj --rays bunny_primary.ray --rays bunny_shadow.ray:any
+  halfshade bench bvh bunny.obj --rays bunny_primary.ray --dump-hits hits.bin
   halfshade bench bvh --scaling -o scaling.svg
       makes scaling.svg, scaling.csv and scaling.md
 
@@ -49,6 +51,9 @@ pub struct BvhOptions {
     /// Builders, with commas between them [default: all but none, which tests every triangle]
     #[arg(long, value_name = "BUILDERS", value_delimiter = ',', value_parser = names::builder())]
     builder: Vec<Builder>,
+    /// Which vectors the trees are for, with commas between them [default: the widest that the processor has]
+    #[arg(long, value_name = "WIDTHS", value_delimiter = ',', value_parser = width())]
+    width: Vec<Width>,
     /// Numbers of threads, with commas between them
     #[arg(long, value_name = "N,…", value_delimiter = ',', default_value = "1", value_parser = clap::value_parser!(u16).range(1..=4096))]
     threads: Vec<u16>,
@@ -91,6 +96,17 @@ impl FromStr for RayFile {
         let path = PathBuf::from(path);
         Ok(Self { path, query })
     }
+}
+
+/// Reads the name of a width that this processor can do, and lists them in help and errors.
+fn width() -> impl TypedValueParser<Value = Width> {
+    let names = Width::available().into_iter().map(width_name);
+    PossibleValuesParser::new(names).try_map(|given| {
+        let mut widths = Width::available().into_iter();
+        widths
+            .find(|&width| width_name(width) == given)
+            .ok_or("not one of them")
+    })
 }
 
 /// Does what the options say.
@@ -209,6 +225,14 @@ fn plan(options: &BvhOptions, repeats: u16) -> Plan {
     Plan {
         builders: match options.builder.as_slice() {
             [] => all_trees.collect(),
+            given => given.to_vec(),
+        },
+        widths: match options.width.as_slice() {
+            [] => Width::available()
+                .into_iter()
+                .next_back()
+                .into_iter()
+                .collect(),
             given => given.to_vec(),
         },
         threads: options.threads.iter().map(|&n| usize::from(n)).collect(),

@@ -22,7 +22,7 @@ const COMMAND: &str = "bench features";
 const EXAMPLES: &str = "\
 Examples:
   halfshade bench features scenes/house.toml --size 320x180
-  halfshade bench features bunny.obj --samples 16 --seconds 60 --json
+  halfshade bench features bunny.obj --light-samples 16 --seconds 60 --json
 
 A picture that would take longer than --seconds is rendered with fewer samples, and then fewer
 pixels, all over it. Its time is scaled up from that, and marked with ~.";
@@ -211,10 +211,11 @@ fn times(cell: &FeatureCell, ratio: String) -> Vec<String> {
     vec![
         cell.threads.to_string(),
         marked(number(cell.seconds)),
-        marked(number(cell.seconds_min)),
-        marked(number(cell.seconds_max)),
-        cell.cpu_seconds
-            .map_or_else(|| "-".to_owned(), |s| marked(number(s))),
+        marked(number(cell.time.wall.min)),
+        marked(number(cell.time.wall.max)),
+        cell.time
+            .processor
+            .map_or_else(|| "-".to_owned(), |spread| marked(number(spread.median))),
         marked(ratio),
         marked(cell.rays.to_string()),
         number(cell.mrays_per_second),

@@ -1,6 +1,6 @@
 //! What `bench bvh --scaling` measured, as charts, tables, CSV and fitted growth.
 
-use halfshade::bench::{Generated, RayReport, TreeReport};
+use halfshade::bench::{Generated, RayReport, Spread, Timing, TreeReport};
 use halfshade::report::plot::{Chart, Guide, Line, Marker, Point, Series, Style};
 use halfshade::report::power_law::PowerLaw;
 use serde::Serialize;
@@ -14,8 +14,7 @@ const RATE: &str = "million rays a second";
 struct Quantity {
     name: String,
     unit: &'static str,
-    /// Median, least and greatest.
-    value: Box<dyn Fn(&TreeReport) -> [f64; 3]>,
+    value: Box<dyn Fn(&TreeReport) -> Spread>,
 }
 
 /// Build time and bytes, then the rate of every ray set.
@@ -24,47 +23,41 @@ fn quantities(reports: &[TreeReport]) -> Vec<Quantity> {
         Quantity {
             name: "build time".to_owned(),
             unit: "seconds",
-            value: Box::new(build_seconds),
+            value: Box::new(build_time),
         },
         Quantity {
             name: "memory".to_owned(),
             unit: "bytes",
-            value: Box::new(|r| [r.bytes as f64; 3]),
+            value: Box::new(|report| Spread::of([report.bytes as f64])),
         },
     ];
     let sets = reports.first().map_or(&[][..], |report| &report.rays);
     quantities.extend(sets.iter().enumerate().map(|(set, rays)| Quantity {
         name: format!("{} rays", rays.name),
         unit: RATE,
-        value: Box::new(move |report| rates(&report.rays[set])),
+        value: Box::new(move |report| rate(&report.rays[set])),
     }));
     quantities
 }
 
-/// By processor time where one thread builds, and it is known; by wall time otherwise.
-fn build_seconds(report: &TreeReport) -> [f64; 3] {
-    let r = report;
-    match (
-        r.build_cpu_seconds,
-        r.build_cpu_seconds_min,
-        r.build_cpu_seconds_max,
-    ) {
-        (Some(median), Some(min), Some(max)) if r.threads == 1 => [median, min, max],
-        _ => [r.build_seconds, r.build_seconds_min, r.build_seconds_max],
+/// Of one thread as if it had a processor to itself. Several do not share the work evenly, and
+/// only the wall tells how long they take.
+fn build_time(report: &TreeReport) -> Spread {
+    match report.threads {
+        1 => report.build.undisturbed(1),
+        _ => report.build.wall,
     }
 }
 
-/// Millions of rays in a second by processor time, or by wall time where that is not known.
-fn rates(rays: &RayReport) -> [f64; 3] {
-    let by_wall = [rays.seconds, rays.seconds_min, rays.seconds_max].map(Some);
-    let by_processor = [rays.cpu_seconds, rays.cpu_seconds_min, rays.cpu_seconds_max]
-        .map(|seconds| seconds.map(|s| s / rays.threads as f64));
-    let seconds = match by_processor {
-        [Some(_), ..] => by_processor,
-        _ => by_wall,
-    };
-    let [median, min, max] = seconds.map(|s| rays.count as f64 / s.unwrap_or(f64::NAN) / 1e6);
-    [median, max, min]
+/// Millions of rays in a second, as if every thread had a processor to itself.
+fn rate(rays: &RayReport) -> Spread {
+    let seconds = rays.time.undisturbed(rays.threads);
+    let rate = |seconds: f64| rays.count as f64 / seconds / 1e6;
+    Spread {
+        median: rate(seconds.median),
+        min: rate(seconds.max),
+        max: rate(seconds.min),
+    }
 }
 
 /// One mesh kind with one builder, by size.
@@ -97,11 +90,11 @@ fn chart(reports: &[TreeReport], quantity: &Quantity, letter: char) -> Chart {
         }
         let is_first_kind = mesh == Generated::ALL[0].name();
         let point = |report: &&TreeReport| {
-            let [y, low, high] = (quantity.value)(report);
+            let value = (quantity.value)(report);
             Point {
                 x: report.triangles as f64,
-                y,
-                range: Some((low, high)),
+                y: value.median,
+                range: Some((value.min, value.max)),
             }
         };
         series.push(Series {
@@ -123,7 +116,7 @@ fn chart(reports: &[TreeReport], quantity: &Quantity, letter: char) -> Chart {
         });
     }
     // A little below everything.
-    let per_triangle = |r: &TreeReport| (quantity.value)(r)[1] / r.triangles as f64;
+    let per_triangle = |r: &TreeReport| (quantity.value)(r).min / r.triangles as f64;
     let least = reports.iter().map(per_triangle).reduce(f64::min);
     Chart {
         title: format!("({letter}) {}", quantity.name),
@@ -159,7 +152,7 @@ pub fn growths(reports: &[TreeReport]) -> Vec<Growth> {
         for (mesh, builder, curve) in curves(reports) {
             let points: Vec<(f64, f64)> = curve
                 .iter()
-                .map(|report| (report.triangles as f64, (quantity.value)(report)[0]))
+                .map(|report| (report.triangles as f64, (quantity.value)(report).median))
                 .collect();
             if let Some(fit) = PowerLaw::fit(&points) {
                 growths.push(Growth {
@@ -208,11 +201,11 @@ pub fn table(reports: &[TreeReport]) -> Table {
             report.triangles.to_string(),
             report.builder.to_owned(),
             report.threads.to_string(),
-            number(build_seconds(report)[0]),
+            number(build_time(report).median),
             number(report.bytes_per_triangle),
             number(report.sah_cost),
         ];
-        row.extend(report.rays.iter().map(|rays| number(rates(rays)[0])));
+        row.extend(report.rays.iter().map(|rays| number(rate(rays).median)));
         table.row(row);
     }
     table
@@ -220,54 +213,45 @@ pub fn table(reports: &[TreeReport]) -> Table {
 
 /// Every number, for other programs; columns for what is not known are empty.
 pub fn csv(reports: &[TreeReport]) -> String {
-    let mut text = "mesh,triangles,builder,threads,build_seconds,build_seconds_min,\
-                    build_seconds_max,build_cpu_seconds,bytes,bytes_per_triangle,sah_cost,nodes,\
-                    leaves,depth"
-        .to_owned();
+    let mut head = "mesh,triangles,builder,width,threads".to_owned() + &time_columns("build");
+    head += ",bytes,bytes_per_triangle,sah_cost,nodes,leaves,depth";
     for set in reports.first().map_or(&[][..], |report| &report.rays) {
-        for column in [
-            "rays",
-            "seconds",
-            "cpu_seconds",
-            "mrays_per_second",
-            "mrays_per_cpu_second",
-            "nodes_per_ray",
-            "leaves_per_ray",
-        ] {
-            text += &format!(",{}_{column}", set.name);
-        }
+        let name = &set.name;
+        head += &format!(",{name}_rays{}", time_columns(name));
+        head += &format!(",{name}_nodes_per_ray,{name}_leaves_per_ray");
     }
-    let known = |value: Option<f64>| value.map_or_else(String::new, |v| v.to_string());
-    for r in reports {
-        text += &format!(
-            "\n{},{},{},{},{},{},{},{},{},{},{},{},{},{}",
-            r.mesh,
-            r.triangles,
-            r.builder,
-            r.threads,
-            r.build_seconds,
-            r.build_seconds_min,
-            r.build_seconds_max,
-            known(r.build_cpu_seconds),
-            r.bytes,
-            r.bytes_per_triangle,
-            r.sah_cost,
-            r.nodes,
-            r.leaves,
-            r.depth
-        );
-        for rays in &r.rays {
-            text += &format!(
-                ",{},{},{},{},{},{},{}",
-                rays.count,
-                rays.seconds,
-                known(rays.cpu_seconds),
-                rays.mrays_per_second,
-                known(rays.mrays_per_cpu_second),
-                rays.nodes_per_ray,
-                rays.leaves_per_ray
-            );
-        }
+    let rows = reports.iter().map(csv_row);
+    std::iter::once(head)
+        .chain(rows)
+        .map(|line| line + "\n")
+        .collect()
+}
+
+fn csv_row(report: &TreeReport) -> String {
+    let r = report;
+    let mut row = format!("{},{},{}", r.mesh, r.triangles, r.builder);
+    row += &format!(",{},{}", r.width, r.threads);
+    row += &time_values(&r.build);
+    row += &format!(",{},{},{}", r.bytes, r.bytes_per_triangle, r.sah_cost);
+    row += &format!(",{},{},{}", r.nodes, r.leaves, r.depth);
+    for rays in &r.rays {
+        row += &format!(",{}{}", rays.count, time_values(&rays.time));
+        row += &format!(",{},{}", rays.nodes_per_ray, rays.leaves_per_ray);
     }
-    text + "\n"
+    row
+}
+
+fn time_columns(name: &str) -> String {
+    ["seconds", "cpu_seconds"]
+        .map(|clock| format!(",{name}_{clock},{name}_{clock}_min,{name}_{clock}_max"))
+        .concat()
+}
+
+fn time_values(time: &Timing) -> String {
+    [Some(time.wall), time.processor]
+        .map(|spread| match spread {
+            Some(Spread { median, min, max }) => format!(",{median},{min},{max}"),
+            None => ",,,".to_owned(),
+        })
+        .concat()
 }

@@ -12,6 +12,10 @@ use super::Failure;
 
 /// Measure the tracing core, or what a scene's features cost
 #[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  halfshade bench bvh bunny.obj
+  halfshade bench features scenes/house.toml")]
 pub struct BenchOptions {
     #[command(subcommand)]
     command: BenchCommand,

@@ -1,6 +1,6 @@
 //! What `bench bvh` measured, as tables.
 
-use halfshade::bench::{RayReport, TreeReport};
+use halfshade::bench::{RayReport, Spread, TreeReport};
 
 use crate::cli::console::Bytes;
 use crate::cli::table::{Table, known, number};
@@ -18,6 +18,7 @@ pub fn tables(reports: &[TreeReport]) -> String {
 fn trees(reports: &[TreeReport]) -> Table {
     let mut table = Table::new(&[
         "builder",
+        "width",
         "threads",
         "build s",
         "min",
@@ -33,11 +34,12 @@ fn trees(reports: &[TreeReport]) -> Table {
     for tree in reports {
         table.row(vec![
             tree.builder.to_owned(),
+            tree.width.to_owned(),
             tree.threads.to_string(),
             number(tree.build_seconds),
-            number(tree.build_seconds_min),
-            number(tree.build_seconds_max),
-            known(tree.build_cpu_seconds),
+            number(tree.build.wall.min),
+            number(tree.build.wall.max),
+            known(tree.build.processor.map(|spread| spread.median)),
             Bytes(tree.bytes as u64).to_string(),
             number(tree.bytes_per_triangle),
             number(tree.sah_cost),
@@ -55,6 +57,7 @@ fn rays(reports: &[TreeReport]) -> Table {
         "rays",
         "asked",
         "builder",
+        "width",
         "threads",
         "Mrays/cpu s",
         "min",
@@ -75,17 +78,19 @@ fn rays(reports: &[TreeReport]) -> Table {
 }
 
 fn ray_row(tree: &TreeReport, rays: &RayReport) -> Vec<String> {
-    let rate = |cpu_seconds: Option<f64>| {
-        known(cpu_seconds.map(|s| rays.count as f64 * rays.threads as f64 / s / 1e6))
+    let rate = |seconds: fn(&Spread) -> f64| {
+        let processors = rays.time.processor.as_ref();
+        known(processors.map(|s| rays.count as f64 * rays.threads as f64 / seconds(s) / 1e6))
     };
     vec![
         rays.name.clone(),
         rays.kind.name().to_owned(),
         tree.builder.to_owned(),
+        tree.width.to_owned(),
         rays.threads.to_string(),
         known(rays.mrays_per_cpu_second),
-        rate(rays.cpu_seconds_max),
-        rate(rays.cpu_seconds_min),
+        rate(|spread| spread.max),
+        rate(|spread| spread.min),
         number(rays.mrays_per_second),
         number(rays.nodes_per_ray),
         number(rays.leaves_per_ray),

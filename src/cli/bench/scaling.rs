@@ -56,10 +56,10 @@ pub fn run(
     json: bool,
     console: Console,
 ) -> Result<(), Failure> {
-    if plan.threads.len() > 1 {
+    if plan.threads.len() > 1 || plan.widths.len() > 1 {
         return Err(Failure::usage(
             COMMAND,
-            "--scaling takes one number of threads",
+            "--scaling takes one number of threads and one width",
         ));
     }
     if plan.builders.contains(&Builder::None) {

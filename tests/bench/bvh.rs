@@ -1,46 +1,15 @@
-//! `halfshade bench` and the library behind it: files, counts and names. No time is asserted.
-
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+//! `bench bvh`: reports, rays and hits.
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
 
 use halfshade::bench::{Plan, Query, Triangles, measure, own_rays, read_rays, write_rays};
-use halfshade::bvh::{Builder, Bvh};
+use halfshade::bvh::{Builder, Bvh, Width};
 use halfshade::import::{SceneOptions, import};
 use halfshade::math::{Ray, Vec3};
 use serde_json::Value;
-use tempfile::TempDir;
 
-/// A pyramid on a floor; two quadrilaterals and four triangles.
-const OBJ: &str = "\
-v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv 0 4 0
-v -3 0 -3\nv 3 0 -3\nv 3 0 3\nv -3 0 3
-f 9 8 7 6\nf 1 2 3 4\nf 1 5 2\nf 2 5 3\nf 3 5 4\nf 4 5 1
-";
-
-fn folder() -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("scene.obj"), OBJ).unwrap();
-    folder
-}
-
-fn bench(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_halfshade"))
-        .arg("bench")
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .unwrap()
-}
-
-fn bench_json(folder: &Path, arguments: &[&str]) -> Value {
-    let output = bench(folder, arguments);
-    let error = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {error}");
-    serde_json::from_slice(&output.stdout).unwrap()
-}
+use super::{bench, bench_json, folder};
 
 fn triangles(folder: &Path) -> Triangles {
     let imported = import(&folder.join("scene.obj"), &SceneOptions::default()).unwrap();
@@ -71,6 +40,7 @@ fn json_has_the_promised_keys() {
         assert_eq!(report["triangles"], 8);
         assert!(report["builder"].is_string() && report["builder"] != "none");
         assert!(report["build_seconds"].as_f64().unwrap() > 0.0);
+        assert_eq!(report["build_seconds"], report["build"]["wall"]["median"]);
         assert!(report["bytes"].as_u64().unwrap() > 8 * 36);
         let rays = report["rays"].as_array().unwrap();
         assert_eq!(rays.len(), 4);
@@ -116,17 +86,19 @@ fn a_table_names_every_builder_and_ray_set() {
 }
 
 #[test]
-fn all_builders_find_the_same() {
+fn all_builders_and_widths_find_the_same() {
     let folder = folder();
     let triangles = triangles(folder.path());
     let sets = own_rays(&triangles, 32).unwrap();
     let plan = Plan {
         builders: Builder::ALL.to_vec(),
+        widths: Width::available(),
         threads: vec![1, 3],
         repeats: 1,
     };
     let reports = measure("scene", &triangles, &sets, &plan).unwrap();
-    assert_eq!(reports.len(), 2 * Builder::ALL.len());
+    let trees = Builder::ALL.len() * Width::available().len();
+    assert_eq!(reports.len(), 2 * trees);
     for report in &reports {
         for (set, expected) in report.rays.iter().zip(&reports[0].rays) {
             assert_eq!((set.hits, &set.digest), (expected.hits, &expected.digest));
@@ -254,189 +226,4 @@ fn saved_rays_can_be_read_again() {
         assert_eq!(digest(&own), digest(&read));
     }
     assert_eq!(read[0]["rays"][1]["name"], "own_shadow");
-}
-
-#[test]
-fn scaling_writes_a_plot_and_tables() {
-    let folder = folder();
-    let few = [
-        "--max-triangles",
-        "17000",
-        "--repeats",
-        "1",
-        "--resolution",
-        "16",
-    ];
-    let arguments = [
-        &["bvh", "--scaling", "-o", "made", "--json", "-q"],
-        &few[..],
-    ]
-    .concat();
-    let all = bench_json(folder.path(), &arguments);
-    let trees = Builder::ALL.len() - 1;
-    let (sizes, kinds, quantities) = (3, 2, 6);
-    let measurements = all["measurements"].as_array().unwrap();
-    assert_eq!(measurements.len(), sizes * kinds * trees);
-    let growth = all["growth"].as_array().unwrap();
-    assert_eq!(growth.len(), quantities * kinds * trees);
-    for growth in growth.iter().filter(|g| g["quantity"] == "memory") {
-        let exponent = growth["exponent"].as_f64().unwrap();
-        assert!((exponent - 1.0).abs() < 0.15, "{growth}");
-    }
-    let read = |name: &str| fs::read_to_string(folder.path().join("made").join(name)).unwrap();
-    let csv = read("scaling.csv");
-    let columns = |line: &str| line.split(',').count();
-    assert_eq!(csv.lines().count(), 1 + measurements.len());
-    assert!(csv.lines().all(|line| columns(line) == 14 + 4 * 7), "{csv}");
-    let markdown = read("scaling.md");
-    assert!(markdown.contains("| terrain |") && markdown.contains("| exponent |"));
-    let svg = read("scaling.svg");
-    for name in [
-        "(a) build time",
-        "(f) random rays",
-        "balanced, spheres",
-        "bytes",
-    ] {
-        assert!(svg.contains(name), "{name}");
-    }
-    let values = measurements.len() * quantities;
-    assert!(
-        svg.matches("<circle").count() > values,
-        "a marker for each value"
-    );
-}
-
-/// Two soft lights, of which one can be hard, and few pixels.
-fn soft_scene(folder: &Path) {
-    let scene = "\
-[film]\nsize = [24, 16]\n[sampling]\nsamples = 4\n[[model]]\nfile = \"scene.obj\"
-[[light]]\nkind = \"point\"\nposition = [2.0, 5.0, 3.0]\nintensity = [90.0, 90.0, 90.0]\nradius = 0.5\nsamples = 9
-[[light]]\nkind = \"disk\"\nposition = [-2.0, 5.0, 3.0]\nnormal = [0.0, -1.0, 0.0]\nradius = 0.5\nradiance = [9.0, 9.0, 9.0]\n";
-    fs::write(folder.join("soft.toml"), scene).unwrap();
-}
-
-#[test]
-fn features_are_measured_with_and_without() {
-    let folder = folder();
-    soft_scene(folder.path());
-    let arguments = [
-        &["features", "soft.toml", "--json", "--threads", "2"][..],
-        &["--repeats", "1", "--seconds", "1000"],
-    ];
-    let report = bench_json(folder.path(), &arguments.concat());
-    assert_eq!(report["triangles"], 8);
-    assert_eq!(report["always_soft_lights"], 1);
-    let sampling = report["sampling"].as_array().unwrap();
-    let told: Vec<_> = sampling
-        .iter()
-        .map(|cell| (cell["samples"].as_u64(), cell["soft_shadows"].as_bool()))
-        .collect();
-    let expected = [(1, false), (1, true), (4, false), (4, true)];
-    assert_eq!(told, expected.map(|(n, is_soft)| (Some(n), Some(is_soft))));
-    let rays: Vec<u64> = sampling
-        .iter()
-        .map(|c| c["rays"].as_u64().unwrap())
-        .collect();
-    // Four camera samples cost four times the rays, up to the noise of what they hit; nine shadow
-    // rays and one cost more than one and one.
-    for (one, four) in [(rays[0], rays[2]), (rays[1], rays[3])] {
-        let ratio = four as f64 / one as f64;
-        assert!((3.6..4.4).contains(&ratio), "{ratio}");
-    }
-    let camera = 24 * 16;
-    assert!(rays[1] - camera > 4 * (rays[0] - camera), "{rays:?}");
-
-    let bvh = report["bvh"].as_array().unwrap();
-    assert_eq!(bvh.len(), 2 * Builder::ALL.len());
-    assert_eq!(
-        (&bvh[0]["builder"], &bvh[0]["ratio"]),
-        (&"none".into(), &1.0.into())
-    );
-    for cell in bvh {
-        assert_eq!(cell["rays"].as_u64(), Some(rays[3]), "{cell}");
-        assert_eq!(cell["measured_share"], 1.0);
-        let seconds = cell["seconds"].as_f64().unwrap();
-        let rate = cell["mrays_per_second"].as_f64().unwrap();
-        assert!((seconds * rate * 1e6 / rays[3] as f64 - 1.0).abs() < 1e-9);
-    }
-}
-
-#[test]
-fn what_takes_too_long_is_scaled_up_and_marked() {
-    let folder = folder();
-    soft_scene(folder.path());
-    let limited = ["--seconds", "1e-9", "--repeats", "1", "--threads", "1"];
-    let arguments = [&["features", "soft.toml", "--json"], &limited[..]].concat();
-    let report = bench_json(folder.path(), &arguments);
-    let cell = &report["sampling"][3];
-    let share = cell["measured_share"].as_f64().unwrap();
-    assert!(0.02 < share && share < 0.1, "{share}");
-    // 24 × 16 pixels with 4 camera samples and at most 10 shadow rays each.
-    let rays = cell["rays"].as_u64().unwrap();
-    assert!((1536..=1536 * 11).contains(&rays), "{rays}");
-    let arguments = [&["features", "soft.toml"], &limited[..]].concat();
-    let output = bench(folder.path(), &arguments);
-    let text = String::from_utf8(output.stdout).unwrap();
-    for part in [
-        "soft.toml, 8 triangles, 24x16 pixels",
-        "~ scaled up",
-        "never hard: 1",
-    ] {
-        assert!(text.contains(part), "{text}");
-    }
-}
-
-#[test]
-fn what_is_wrong_is_named() {
-    let folder = folder();
-    let path = folder.path();
-    fs::write(path.join("empty.obj"), "v 0 0 0\n").unwrap();
-    fs::write(path.join("other.ray"), "RAY2....").unwrap();
-    fs::write(path.join("short.ray"), b"RAY1\x02\0\0\0....").unwrap();
-    let scene = |more: &[&'static str]| [&["bvh", "scene.obj"], more].concat();
-    for (arguments, status, expected) in [
-        (vec![], 2, "Usage"),
-        (vec!["bvh"], 2, "MESH"),
-        (scene(&["--builder", "best"]), 2, "balanced"),
-        (scene(&["--threads", "0"]), 2, "1.."),
-        (scene(&["--repeats", "0"]), 2, "1.."),
-        (scene(&["--dump-hits", "x"]), 2, "--rays"),
-        (
-            vec!["bvh", "a", "b", "--rays", "r", "--dump-hits", "x"],
-            2,
-            "one mesh",
-        ),
-        (vec!["bvh", "a", "b", "--save-rays", "x"], 2, "one mesh"),
-        (scene(&["--scaling"]), 2, "--scaling"),
-        (scene(&["-o", "x.svg"]), 2, "--scaling"),
-        (scene(&["--max-triangles", "9"]), 2, "--scaling"),
-        (vec!["bvh", "--scaling", "--threads", "1,2"], 2, "threads"),
-        (vec!["bvh", "--scaling", "--builder", "none"], 2, "trees"),
-        (vec!["bvh", "--scaling", "-o", "no/x.svg"], 1, "no/x.svg"),
-        (vec!["features", "missing.obj"], 1, "missing.obj"),
-        (
-            vec!["features", "scene.obj", "--seconds", "0"],
-            2,
-            "seconds",
-        ),
-        (vec!["bvh", "missing.obj"], 1, "missing.obj"),
-        (vec!["bvh", "empty.obj"], 1, "empty.obj: holds nothing"),
-        (scene(&["--rays", "missing.ray"]), 1, "missing.ray"),
-        (scene(&["--rays", "other.ray"]), 1, "not a ray file"),
-        (
-            scene(&["--rays", "short.ray:any"]),
-            1,
-            "announces 2 rays of 32 bytes, but 4 bytes follow",
-        ),
-        (
-            scene(&["--rays", "other.ray", "--dump-hits", "no/x"]),
-            1,
-            "does not exist",
-        ),
-    ] {
-        let output = bench(path, &arguments);
-        let text = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(status), "{arguments:?}: {text}");
-        assert!(text.contains(expected), "{arguments:?}: {text}");
-    }
 }
