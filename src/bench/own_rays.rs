@@ -4,21 +4,17 @@ use rayon::prelude::*;
 
 use crate::bvh::{Builder, Bvh, Hit};
 use crate::camera::{Camera, film_position};
+use crate::import::scene_file::framing_camera;
 use crate::interaction::{Interaction, rounding_error};
 use crate::math::{Aabb, DVec3, Frame, Ray, UVec2, UnitVec3, Vec2, Vec3};
 use crate::sampling::{Pattern, Sampler, SamplingConfig, square_to_cone, square_to_disk};
 
 use super::{Query, RaySet, Triangles};
 
-/// From the middle of the mesh to the camera: from the front, a little to the right and above.
-const TO_CAMERA: Vec3 = Vec3::new(0.45, 0.35, 1.0);
-
 /// From the middle of the mesh to the light, and the light's radius, in halves of the mesh's
 /// longest side.
 const TO_LIGHT: Vec3 = Vec3::new(1.2, 2.0, 1.0);
 const LIGHT_RADIUS: f32 = 0.25;
-
-const VERTICAL_FOV_RADIANS: f32 = 0.73;
 
 /// Numbers of a ray, by what they are for.
 #[derive(Clone, Copy)]
@@ -79,13 +75,13 @@ pub fn own_rays(triangles: &Triangles, side: u32) -> Option<[RaySet; 4]> {
     ])
 }
 
-/// A camera that sees all of the sphere around `bounds`; `None` where that is one point.
+/// As a model by itself gets it; `None` where there is nothing to see.
 fn camera(bounds: &Aabb) -> Option<Camera> {
-    let radius = 0.5 * bounds.extent().length();
-    let distance = radius / (0.5 * VERTICAL_FOV_RADIANS).sin();
-    let center = bounds.center();
-    let position = center + distance * TO_CAMERA.normalize();
-    Camera::look_at(position, center, Vec3::Y, VERTICAL_FOV_RADIANS)
+    if bounds.is_empty() {
+        return None;
+    }
+    let camera = framing_camera((bounds.min.as_dvec3(), bounds.max.as_dvec3()), 1.0)?;
+    Some(camera.item.placed(1.0, camera.origin.as_vec3()))
 }
 
 struct DiskLight {

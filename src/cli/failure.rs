@@ -10,6 +10,7 @@ use clap::error::ErrorKind;
 use halfshade::import::ImportError;
 use halfshade::output::OutputError;
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, NamedSource, SourceSpan};
+use rayon::ThreadPoolBuildError;
 use thiserror::Error;
 
 use super::Arguments;
@@ -132,6 +133,12 @@ fn source_line(error: &ImportError) -> Option<(NamedSource<String>, SourceSpan)>
     let span = (before + indent, line.trim().len());
     let name = error.path.display().to_string();
     Some((NamedSource::new(name, text), span.into()))
+}
+
+impl From<ThreadPoolBuildError> for Failure {
+    fn from(error: ThreadPoolBuildError) -> Self {
+        Self::job(format_args!("threads could not be started: {error}"))
+    }
 }
 
 impl From<OutputError> for Failure {

@@ -32,8 +32,7 @@ pub fn run(options: &RenderOptions) -> Result<(), Failure> {
     let threads = options.work.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
-        .build()
-        .map_err(|error| Failure::job(format_args!("threads could not be started: {error}")))?;
+        .build()?;
     pool.install(|| run_on_pool(options, targets.as_ref(), &interrupt))
 }
 

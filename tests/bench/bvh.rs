@@ -21,7 +21,11 @@ fn some_rays() -> Vec<Ray> {
         origin: Vec3::new(0.013 * f32::from(i) - 2.6, 2.0, 0.1),
         direction: Vec3::new(0.1, -1.0, 0.02),
         t_min: 0.25,
-        t_max: if i % 3 == 0 { 0.6 } else { f32::INFINITY },
+        t_max: if i.is_multiple_of(3) {
+            0.6
+        } else {
+            f32::INFINITY
+        },
     };
     (0..400).map(ray).collect()
 }

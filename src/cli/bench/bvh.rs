@@ -186,8 +186,8 @@ fn measure_mesh(
         let tree = Bvh::build(&triangles.positions, &triangles.indices, plan.builders[0]);
         write_hits(file, &tree, set)?;
     }
-    measure(&path.display().to_string(), &triangles, sets, &plan)
-        .map_err(|error| Failure::job(format_args!("threads could not be started: {error}")))
+    let name = path.display().to_string();
+    Ok(measure(&name, &triangles, sets, &plan)?)
 }
 
 fn load(options: &BvhOptions, path: &Path) -> Result<Triangles, Failure> {

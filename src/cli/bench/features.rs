@@ -82,8 +82,7 @@ pub fn run(options: &FeatureOptions) -> Result<(), Failure> {
             usize::from,
         ),
     };
-    let report = bench_features(&scene, &settings, camera, &plan)
-        .map_err(|error| Failure::job(format_args!("threads could not be started: {error}")))?;
+    let report = bench_features(&scene, &settings, camera, &plan)?;
     let shown = Shown {
         scene: options.scene.scene.display().to_string(),
         triangles: scene.triangle_count(),

@@ -17,9 +17,9 @@ use crate::cli::Failure;
 use crate::cli::console::{Console, print};
 
 /// Triangles of the smallest mesh; each next one has four times as many.
-const SMALLEST: usize = 1_000;
-const STEP: usize = 4;
-const LARGEST: usize = 16_400_000;
+const SMALLEST: u64 = 1_000;
+const STEP: u64 = 4;
+const LARGEST: u64 = 16_400_000;
 
 /// What the numbers are.
 const METHOD: &str = "Medians of repeats. Build times on one thread and all rates are by processor \
@@ -36,8 +36,8 @@ pub struct ScalingOptions {
     #[arg(short, long, value_name = "DIR|FILE.svg")]
     output: Option<PathBuf>,
     /// Leave out larger meshes [default: 16400000]
-    #[arg(long, value_name = "N")]
-    max_triangles: Option<usize>,
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(SMALLEST..))]
+    max_triangles: Option<u64>,
 }
 
 impl ScalingOptions {
@@ -65,7 +65,7 @@ pub fn run(
     if plan.builders.contains(&Builder::None) {
         return Err(Failure::usage(
             COMMAND,
-            "--scaling is for trees: without one the large meshes would take days",
+            "--scaling is for trees: without one the large meshes would take hours",
         ));
     }
     let files = Files::of(options)?;
@@ -101,11 +101,10 @@ fn measure_all(
 ) -> Result<Vec<TreeReport>, Failure> {
     let largest = options.max_triangles.unwrap_or(LARGEST);
     let sizes = std::iter::successors(Some(SMALLEST), |size| size.checked_mul(STEP));
-    let sizes: Vec<usize> = sizes.take_while(|&size| size <= largest).collect();
     let mut reports = Vec::new();
-    for &size in &sizes {
+    for size in sizes.take_while(|&size| size <= largest) {
         for kind in Generated::ALL {
-            let triangles = kind.triangles(size);
+            let triangles = kind.triangles(size as usize);
             console.say(format_args!(
                 "{}: {} triangles",
                 kind.name(),
@@ -113,10 +112,7 @@ fn measure_all(
             ));
             let sets = own_rays(&triangles, resolution)
                 .ok_or_else(|| Failure::job("a mesh has nothing that rays could hit"))?;
-            let of_mesh = measure(kind.name(), &triangles, &sets, plan).map_err(|error| {
-                Failure::job(format_args!("threads could not be started: {error}"))
-            })?;
-            reports.extend(of_mesh);
+            reports.extend(measure(kind.name(), &triangles, &sets, plan)?);
         }
     }
     Ok(reports)
