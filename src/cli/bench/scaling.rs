@@ -69,9 +69,8 @@ pub fn run(
         ));
     }
     let files = Files::of(options)?;
-    let reports = measure_all(options, plan, resolution, console)?;
+    let reports = measure_all(options, plan, resolution, console, &files)?;
     let growth = growths(&reports);
-    files.write(&reports, &growth)?;
     if json {
         let all = Scaling {
             measurements: &reports,
@@ -93,11 +92,13 @@ struct Scaling<'a> {
     growth: &'a [Growth],
 }
 
+/// Writes the files after each size: the largest take long, and somebody may lose patience.
 fn measure_all(
     options: &ScalingOptions,
     plan: &Plan,
     resolution: u32,
     console: Console,
+    files: &Files,
 ) -> Result<Vec<TreeReport>, Failure> {
     let largest = options.max_triangles.unwrap_or(LARGEST);
     let sizes = std::iter::successors(Some(SMALLEST), |size| size.checked_mul(STEP));
@@ -114,6 +115,7 @@ fn measure_all(
                 .ok_or_else(|| Failure::job("a mesh has nothing that rays could hit"))?;
             reports.extend(measure(kind.name(), &triangles, &sets, plan)?);
         }
+        files.write(&reports, &growths(&reports))?;
     }
     Ok(reports)
 }
