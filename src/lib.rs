@@ -35,7 +35,8 @@
 //! | [`integrate`] | a ray | the radiance that comes back along it |
 //! | [`render`] | a prepared scene, a camera, settings | a film |
 //! | [`output`] | pixels | files |
-//! | [`report`] | two pictures | how far they are apart, as figures, error maps and pages |
+//! | [`bench`] | triangles, rays, scenes | how long they take |
+//! | [`report`] | pictures, measurements | how far they are apart, error maps, fits, plots, pages |
 //!
 //! The program (`main.rs` and `cli/`) is thin: it parses arguments, runs one command, prints, and turns errors
 //! into exit statuses. The library never prints.
@@ -98,6 +99,8 @@ pub mod integrate;
 pub mod render;
 
 pub mod output;
+
+pub mod bench;
 
 pub mod report;
 

@@ -13,7 +13,9 @@ pub fn run(scenes: &[String]) {
     println!("scene      samples   uniform      time  adaptive      time  relMSE at equal time");
     for name in ["penumbra", "house", "cornell", "glass", "terrain"] {
         if scenes.is_empty() || scenes.iter().any(|s| s == name) {
-            with_scene(name, UVec2::new(320, 180), |subject| of_scene(name, subject));
+            with_scene(name, UVec2::new(320, 180), |subject| {
+                of_scene(name, subject)
+            });
         }
     }
 }
@@ -23,7 +25,10 @@ fn measure(subject: &Subject, samples: u32, is_adaptive: bool) -> (f64, f64) {
     let (mut squares, mut seconds) = (0.0, 0.0);
     for seed in 0..SEEDS {
         let settings = subject.settings(Pattern::Sobol, samples, seed);
-        let limits = Limits { is_adaptive, ..Limits::of(&settings) };
+        let limits = Limits {
+            is_adaptive,
+            ..Limits::of(&settings)
+        };
         let got = subject.render(&settings, &limits);
         squares += got.film.error().unwrap().estimate.powi(2);
         seconds += got.seconds;

@@ -12,7 +12,9 @@ pub fn run(scenes: &[String]) {
     println!("scene     asked        got est (true)    seconds   forecast (of it)  samples");
     for name in ["penumbra", "house", "cornell", "glass", "terrain"] {
         if scenes.is_empty() || scenes.iter().any(|s| s == name) {
-            with_scene(name, UVec2::new(320, 180), |subject| of_scene(name, subject));
+            with_scene(name, UVec2::new(320, 180), |subject| {
+                of_scene(name, subject)
+            });
         }
     }
 }
@@ -21,7 +23,12 @@ fn of_scene(name: &str, subject: &Subject) {
     let reference = subject.reference(1024);
     let settings = subject.settings(Pattern::Sobol, 16, 1);
     for is_adaptive in [true, false] {
-        let limits = Limits { samples: 1 << 20, deadline: None, error: None, is_adaptive };
+        let limits = Limits {
+            samples: 1 << 20,
+            deadline: None,
+            error: None,
+            is_adaptive,
+        };
         let print = |asked: String, limits: Limits, is_time: bool| {
             let got = subject.render(&settings, &limits);
             let error = got.film.error().unwrap();
@@ -43,7 +50,14 @@ fn of_scene(name: &str, subject: &Subject) {
             );
         };
         for error in [0.05, 0.02, 0.01] {
-            print(format!("{error}"), Limits { error: Some(error), ..limits }, false);
+            print(
+                format!("{error}"),
+                Limits {
+                    error: Some(error),
+                    ..limits
+                },
+                false,
+            );
         }
         for seconds in [1.0, 3.0, 9.0] {
             let deadline = Some(Instant::now() + Duration::from_secs_f64(seconds));

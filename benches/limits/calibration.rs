@@ -22,7 +22,9 @@ fn of_scene(name: &str, subject: &Subject) {
         for samples in [4, 16, 64] {
             let (mut covered, mut ratios, mut widths) = (0, 0.0, 0.0);
             for seed in 0..SEEDS {
-                let film = subject.uniform(&subject.settings(pattern, samples, seed)).film;
+                let film = subject
+                    .uniform(&subject.settings(pattern, samples, seed))
+                    .film;
                 let error = film.error().unwrap();
                 let truth = true_error(&film, &reference);
                 covered += u32::from(error.low <= truth && truth <= error.high);

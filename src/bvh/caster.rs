@@ -192,13 +192,7 @@ struct Slopes {
 /// Of rays with extreme coordinates or directions, or along an axis.
 #[cold]
 #[inline(never)]
-fn unusual_slopes(
-    ray: &Ray,
-    main: usize,
-    bounds: &Aabb,
-    reach: f32,
-    slack: f32,
-) -> Option<Slopes> {
+fn unusual_slopes(ray: &Ray, main: usize, bounds: &Aabb, reach: f32, slack: f32) -> Option<Slopes> {
     let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
     let length = direction[main].abs();
     let finite = ray.origin.is_finite() && ray.direction.is_finite();

@@ -110,12 +110,7 @@ impl<S> Filter<S> {
     /// e = 24u(R + 5uZ)(R + Z), is more. A triangle is out where one edge function is certainly
     /// negative and another certainly positive. A NaN makes nothing certain.
     #[inline(always)]
-    pub fn test<const W: usize>(
-        &self,
-        block: &Block<W>,
-        count: u32,
-        window: &Window,
-    ) -> u32
+    pub fn test<const W: usize>(&self, block: &Block<W>, count: u32, window: &Window) -> u32
     where
         S: Lanes<W>,
     {

@@ -3,11 +3,11 @@
 use super::build::{Builder, build};
 use super::caster::{Caster, Window};
 use super::count::{Counter, Silent, TraversalCounts};
+use super::filter::Filter;
 use super::hit::{Hit, Search, key};
 use super::layout::{Block, ChildRef, Node, Tree};
 use super::simd::{Job, Lanes, Level, Run, prefetch};
 use super::stats::TreeStats;
-use super::filter::Filter;
 use super::traverse::{Leaves, Stop, Walk};
 use crate::math::{Aabb, Ray, Vec3};
 

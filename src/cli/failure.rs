@@ -10,6 +10,7 @@ use clap::error::ErrorKind;
 use halfshade::import::ImportError;
 use halfshade::output::OutputError;
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, NamedSource, SourceSpan};
+use rayon::ThreadPoolBuildError;
 use thiserror::Error;
 
 use super::Arguments;
@@ -43,14 +44,13 @@ pub struct JobError {
 }
 
 impl Failure {
-    /// Wrong arguments to the subcommand of this name.
+    /// Wrong arguments to the subcommand of this name, such as `render` or `bench bvh`.
     pub fn usage(subcommand: &str, message: impl Display) -> Self {
         let mut program = Arguments::command();
         program.build();
-        let mut command = program
-            .find_subcommand(subcommand)
-            .cloned()
-            .unwrap_or(program);
+        let mut command = subcommand.split(' ').fold(program, |command, name| {
+            command.find_subcommand(name).cloned().unwrap_or(command)
+        });
         Self::Usage(command.error(ErrorKind::ValueValidation, printable(message)))
     }
 
@@ -133,6 +133,12 @@ fn source_line(error: &ImportError) -> Option<(NamedSource<String>, SourceSpan)>
     let span = (before + indent, line.trim().len());
     let name = error.path.display().to_string();
     Some((NamedSource::new(name, text), span.into()))
+}
+
+impl From<ThreadPoolBuildError> for Failure {
+    fn from(error: ThreadPoolBuildError) -> Self {
+        Self::job(format_args!("threads could not be started: {error}"))
+    }
 }
 
 impl From<OutputError> for Failure {

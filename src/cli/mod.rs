@@ -4,6 +4,7 @@
 //! job failed, 2 the arguments are wrong.
 
 mod arguments;
+mod bench;
 mod compare;
 mod comparison;
 mod console;
@@ -22,6 +23,7 @@ mod process;
 mod progress;
 mod render;
 mod stats;
+mod table;
 mod targets;
 
 use clap::{Parser, Subcommand};
@@ -47,6 +49,7 @@ enum Command {
     Render(Box<options::RenderOptions>),
     Info(info::InfoOptions),
     Compare(compare::CompareOptions),
+    Bench(bench::BenchOptions),
 }
 
 /// Does what the arguments say.
@@ -55,5 +58,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Render(arguments) => render::run(arguments),
         Command::Info(arguments) => info::run(arguments),
         Command::Compare(arguments) => compare::run(arguments),
+        Command::Bench(arguments) => bench::run(arguments),
     }
 }

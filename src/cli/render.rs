@@ -33,8 +33,7 @@ pub fn run(options: &RenderOptions) -> Result<(), Failure> {
     let threads = options.work.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
-        .build()
-        .map_err(|error| Failure::job(format_args!("threads could not be started: {error}")))?;
+        .build()?;
     pool.install(|| run_on_pool(options, targets.as_ref(), &interrupt))
 }
 
@@ -169,10 +168,15 @@ fn watched(job: &Job, limits: &Limits, interrupt: &Interrupt, console: Console) 
     interrupt.rendering_begins();
     announce_samples(job, limits, console);
     let progress = RenderProgress::new(console.shows_progress());
-    let film = render_within(job, limits, interrupt.is_requested(), &|event| match event {
-        Event::Progress(p) => progress.observe(p),
-        Event::Forecast(forecast) => progress.suspend(|| console.say(forecast)),
-    });
+    let film = render_within(
+        job,
+        limits,
+        interrupt.is_requested(),
+        &|event| match event {
+            Event::Progress(p) => progress.observe(p),
+            Event::Forecast(forecast) => progress.suspend(|| console.say(forecast)),
+        },
+    );
     if film.stopped_by != StoppedBy::Interrupt {
         interrupt.rendering_is_complete();
     }

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
+use halfshade::bench::processor_seconds;
 use halfshade::color::Rgb;
 use halfshade::film::{ErrorEstimate, Film, RayCounts, StoppedBy};
 use halfshade::output::{OutputError, write_whole};
@@ -121,7 +122,7 @@ impl Stats {
             threads: rayon::current_num_threads(),
             seed: done.seed,
             seconds: done.seconds,
-            cpu_seconds: process::cpu_seconds(),
+            cpu_seconds: processor_seconds(),
             rays: RayStats {
                 camera,
                 shadow,

@@ -266,7 +266,11 @@ impl<'a> Measured<'a> {
         for (i, place) in tile.rect().pixels().enumerate() {
             let taken = tile.taken[i];
             let of = difficulty.for_halves(place.x - film.x, place.y - film.y, taken);
-            let expected: f64 = of.iter().zip(taken).map(|(&d, n)| part(d, n, exponent)).sum();
+            let expected: f64 = of
+                .iter()
+                .zip(taken)
+                .map(|(&d, n)| part(d, n, exponent))
+                .sum();
             error += tile.pixels[i].relative_squared_error().unwrap_or(0.0);
             model += expected;
             squares += expected * expected;
@@ -277,7 +281,11 @@ impl<'a> Measured<'a> {
             difficulty: of_tile,
             error,
             model,
-            pixels: if squares > 0.0 { model * model / squares } else { 0.0 },
+            pixels: if squares > 0.0 {
+                model * model / squares
+            } else {
+                0.0
+            },
         }
     }
 
@@ -289,7 +297,13 @@ impl<'a> Measured<'a> {
         } else {
             film_factor
         };
-        let taken = |tile: &Tile| tile.taken.iter().flatten().map(|&n| f64::from(n)).sum::<f64>();
+        let taken = |tile: &Tile| {
+            tile.taken
+                .iter()
+                .flatten()
+                .map(|&n| f64::from(n))
+                .sum::<f64>()
+        };
         let cost = self.tile.rays.total() as f64 / taken(self.tile).max(1.0);
         let power = (1.0 / (1.0 + exponent)) as f32;
         let pixels = self.tile.taken.iter().zip(&self.difficulty);
@@ -303,7 +317,10 @@ impl<'a> Measured<'a> {
                 }
             })
         });
-        TileShares { cost, shares: shares.collect() }
+        TileShares {
+            cost,
+            shares: shares.collect(),
+        }
     }
 }
 

@@ -1,4 +1,4 @@
-//! Telling how far two pictures are apart: figures, error maps, pages.
+//! What measurements say: how far two pictures are apart, fits, plots, pages.
 //!
 //! [`metrics`] takes [`Picture`]s in memory, so that films and files are measured alike. What
 //! comes out is numbers, pictures ([`error_map`]) and text ([`page`]); nothing here prints, and
@@ -10,6 +10,8 @@ pub mod error_map;
 pub mod metrics;
 pub mod page;
 mod picture;
+pub mod plot;
+pub mod power_law;
 mod read;
 pub mod scale;
 

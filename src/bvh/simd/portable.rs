@@ -79,7 +79,9 @@ impl<const W: usize> Lanes<W> for Portable<W> {
     #[inline(always)]
     fn with_sign_flipped_by(self, other: Self) -> Self {
         let sign = (-0.0f32).to_bits();
-        self.zip(other, |x, y| f32::from_bits(x.to_bits() ^ (y.to_bits() & sign)))
+        self.zip(other, |x, y| {
+            f32::from_bits(x.to_bits() ^ (y.to_bits() & sign))
+        })
     }
     #[inline(always)]
     fn le(self, other: Self) -> u32 {

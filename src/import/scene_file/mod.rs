@@ -143,6 +143,9 @@ mod value;
 use std::path::Path;
 
 use super::{ImportError, Imported};
+use crate::camera::Camera;
+use crate::math::DVec3;
+use crate::scene::Placed;
 pub use defaults::Defaults;
 use document::{Entry, Kind, Node, Source};
 pub use nearest::suggestion;
@@ -157,6 +160,12 @@ pub struct SceneOptions {
     pub overrides: Vec<(String, String)>,
     /// The name of the camera to look through; `None` for what the file says.
     pub camera: Option<String>,
+}
+
+/// The camera that a scene within the box `bounds` gets where it has none, for a picture of this
+/// width over height; `None` where the box is so far away that its size is lost.
+pub fn framing_camera(bounds: (DVec3, DVec3), aspect: f64) -> Option<Placed<Camera>> {
+    defaults::view(Some(bounds), aspect, camera::DEFAULT_VERTICAL_FOV).camera()
 }
 
 /// Imports a scene file.
