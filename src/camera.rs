@@ -125,7 +125,10 @@ impl CameraRays<'_> {
             (origin, direction)
         };
         let world = |v: Vec3| *camera.right * v.x + *camera.up * v.y + *camera.back * v.z;
-        Ray::new(camera.position + world(origin), world(direction.normalize()))
+        Ray::new(
+            camera.position + world(origin),
+            world(direction.normalize()),
+        )
     }
 }
 
@@ -146,7 +149,9 @@ mod tests {
 
     #[test]
     fn the_middle_of_the_film_looks_at_the_target() {
-        let ray = camera().rays(UVec2::new(80, 60)).at(Vec2::new(40.0, 30.0), Vec2::ZERO);
+        let ray = camera()
+            .rays(UVec2::new(80, 60))
+            .at(Vec2::new(40.0, 30.0), Vec2::ZERO);
         assert!((ray.direction - Vec3::new(0.0, 0.0, -1.0)).length() < 1e-6);
     }
 

@@ -50,9 +50,7 @@ fn unit_interval(reversed: u32) -> f32 {
 fn unscrambled(index: u32, pair: Pair) -> u64 {
     match pair {
         Pair::First => u64::from(pascal(index)) << 32 | u64::from(index),
-        Pair::Second => {
-            (0..8).fold(0, |sum, k| sum ^ TABLE[k][(index >> (4 * k)) as usize & 15])
-        }
+        Pair::Second => (0..8).fold(0, |sum, k| sum ^ TABLE[k][(index >> (4 * k)) as usize & 15]),
     }
 }
 
