@@ -8,8 +8,15 @@ use super::count::Counter;
 use super::layout::{ChildRef, Node};
 use super::simd::{Entry, Lanes, Stack, prefetch};
 
+/// Which children of a node are to be visited.
+pub(super) trait Boxes<S, const W: usize> {
+    /// Those that may be met from `near` to `far`, and where they are entered at the earliest.
+    /// `#[inline(always)]`, as all that a walk calls.
+    fn test(&self, node: &Node<W>, near: S, far: S) -> (u32, S);
+}
+
 /// A ray's constants for the box test, in vectors.
-struct BoxTest<S> {
+pub(super) struct BoxTest<S> {
     axes: [AxisTest<S>; 3],
 }
 
@@ -62,7 +69,7 @@ impl<S> AxisTest<S> {
 
 impl<S> BoxTest<S> {
     #[inline(always)]
-    fn new<const W: usize>(ray: &Caster) -> Self
+    pub fn new<const W: usize>(ray: &Caster) -> Self
     where
         S: Lanes<W>,
     {
@@ -74,13 +81,11 @@ impl<S> BoxTest<S> {
             ],
         }
     }
+}
 
-    /// Which children the ray may meet within `near` to `far`, and where it enters them.
+impl<S: Lanes<W>, const W: usize> Boxes<S, W> for BoxTest<S> {
     #[inline(always)]
-    fn test<const W: usize>(&self, node: &Node<W>, near: S, far: S) -> (u32, S)
-    where
-        S: Lanes<W>,
-    {
+    fn test(&self, node: &Node<W>, near: S, far: S) -> (u32, S) {
         let [x, y, z] = &self.axes;
         // In pairs: the next step of the walk waits for the result.
         let enter = x.enter(node).max(y.enter(node));
@@ -91,15 +96,11 @@ impl<S> BoxTest<S> {
     }
 }
 
-/// What stands at the leaves of a walk.
-pub(super) trait Leaves<const W: usize> {
-    /// A ray's constants for it, in vectors.
-    type Test<S>;
-    /// Makes them. As all of these functions `#[inline(always)]`: one of its own, such as a
-    /// closure may become, would lack the instruction set of the walk.
-    fn constants<S: Lanes<W>>(&self, ray: &Caster) -> Self::Test<S>;
+/// What stands at the leaves of a walk. Its functions must be `#[inline(always)]`: one of its own,
+/// such as a closure may become, would lack the instruction set of the walk.
+pub(super) trait Leaves {
     /// Which things in `leaf` may be hit within `window`: where there are any the walk pauses.
-    fn test<S: Lanes<W>>(&self, test: &Self::Test<S>, leaf: ChildRef, window: &Window) -> u32;
+    fn test(&mut self, leaf: ChildRef, window: &Window) -> u32;
     /// Is told that `leaf` will be visited soon.
     fn announce(&self, leaf: ChildRef);
 }
@@ -135,18 +136,16 @@ impl Walk {
     ///
     /// With `ANY` children are not sorted beyond the first two.
     #[inline(always)]
-    pub fn next<S, const ANY: bool, const W: usize, L: Leaves<W>>(
+    pub fn next<S, const ANY: bool, const W: usize>(
         &mut self,
         nodes: &[Node<W>],
-        ray: &Caster,
-        leaves: &L,
+        boxes: &impl Boxes<S, W>,
+        leaves: &mut impl Leaves,
         counter: &mut impl Counter,
     ) -> Option<Stop>
     where
         S: Lanes<W>,
     {
-        let boxes = BoxTest::<S>::new(ray);
-        let test = leaves.constants::<S>(ray);
         let (near, far) = (S::splat(self.window.near), S::splat(self.window.far));
         let stack = &mut self.stack;
         loop {
@@ -171,7 +170,7 @@ impl Walk {
             }
             if current.is_leaf() {
                 counter.leaf();
-                let lanes = leaves.test(&test, current, &self.window);
+                let lanes = leaves.test(current, &self.window);
                 if lanes != 0 {
                     return Some(Stop {
                         leaf: current,
