@@ -52,6 +52,8 @@ fn run_on_pool(
     let camera = camera(options, &imported.scene)?;
     seconds.import = clock.step();
 
+    let limit = options.work.max_memory;
+    memory::check_build(&imported.scene, options.work.bvh, limit, options.console)?;
     let Prepared { scene, warnings } = prepare(&imported.scene, options.work.bvh);
     seconds.prepare = clock.step();
     options.console.warn_all(&warnings);

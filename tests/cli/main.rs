@@ -306,6 +306,24 @@ fn the_same_bits_for_any_number_of_threads() {
 }
 
 #[test]
+fn more_memory_than_allowed_is_refused_before_the_build() {
+    let folder = folder();
+    let output = render(folder.path(), &["--max-memory", "1M"]);
+    assert_eq!(output.status.code(), Some(1));
+    let message = stderr(&output);
+    assert!(
+        message.contains("balanced tree over 6 triangles"),
+        "{message}"
+    );
+    assert!(
+        message.contains("--max-memory allows (1.0 MiB)"),
+        "{message}"
+    );
+    assert!(!folder.path().join("scene.png").exists());
+    render_well(folder.path(), &["--max-memory", "1G"]);
+}
+
+#[test]
 fn a_crop_holds_the_bits_of_the_whole() {
     let folder = folder();
     render_well(folder.path(), &["-o", "whole.exr"]);
