@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use halfshade::film::Pixel;
 use halfshade::math::UVec2;
 use halfshade::render::Limits;
 use halfshade::sampling::Pattern;
@@ -9,10 +10,14 @@ use halfshade::sampling::Pattern;
 use crate::subject::{Subject, true_error, with_scene};
 
 pub fn run(scenes: &[String]) {
-    println!("scene     asked        got est (true)    seconds   forecast (of it)  samples");
+    println!(
+        "scene     asked        got est (true)    seconds   forecast (of it; samples)  samples"
+    );
     for name in ["penumbra", "house", "cornell", "glass", "terrain"] {
         if scenes.is_empty() || scenes.iter().any(|s| s == name) {
-            with_scene(name, UVec2::new(320, 180), |subject| of_scene(name, subject));
+            with_scene(name, UVec2::new(320, 180), |subject| {
+                of_scene(name, subject)
+            });
         }
     }
 }
@@ -21,7 +26,12 @@ fn of_scene(name: &str, subject: &Subject) {
     let reference = subject.reference(1024);
     let settings = subject.settings(Pattern::Sobol, 16, 1);
     for is_adaptive in [true, false] {
-        let limits = Limits { samples: 1 << 20, deadline: None, error: None, is_adaptive };
+        let limits = Limits {
+            samples: 1 << 20,
+            deadline: None,
+            error: None,
+            is_adaptive,
+        };
         let print = |asked: String, limits: Limits, is_time: bool| {
             let got = subject.render(&settings, &limits);
             let error = got.film.error().unwrap();
@@ -31,7 +41,9 @@ fn of_scene(name: &str, subject: &Subject) {
                 } else {
                     (f.seconds, got.seconds)
                 };
-                format!("{forecast:.4} ({:.2})", forecast / outcome)
+                let samples: u64 = got.film.pixels.iter().map(Pixel::count).sum();
+                let share = f.samples as f64 / samples as f64;
+                format!("{forecast:.4} ({:.2}; {share:.2})", forecast / outcome)
             });
             println!(
                 "{name:9} {asked:12} {:.5} ({:.5}) {:8.2}  {forecast:16}  {:.1}{}",
@@ -43,7 +55,14 @@ fn of_scene(name: &str, subject: &Subject) {
             );
         };
         for error in [0.05, 0.02, 0.01] {
-            print(format!("{error}"), Limits { error: Some(error), ..limits }, false);
+            print(
+                format!("{error}"),
+                Limits {
+                    error: Some(error),
+                    ..limits
+                },
+                false,
+            );
         }
         for seconds in [1.0, 3.0, 9.0] {
             let deadline = Some(Instant::now() + Duration::from_secs_f64(seconds));

@@ -15,7 +15,10 @@ mod calibration;
 mod subject;
 
 fn main() {
-    let arguments: Vec<String> = std::env::args().skip(1).filter(|a| a != "--bench").collect();
+    let arguments: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|a| a != "--bench")
+        .collect();
     let (what, scenes) = match arguments.split_first() {
         Some((what, scenes)) => (what.as_str(), scenes),
         None => ("", &[][..]),

@@ -28,7 +28,10 @@ pub fn with_scene(name: &str, size: UVec2, with: impl FnOnce(&Subject)) {
     imported.settings.size = size;
     imported.settings.light_samples = Some(1);
     let prepared = prepare(&imported.scene, Builder::default());
-    with(&Subject { imported: &imported, scene: &prepared.scene });
+    with(&Subject {
+        imported: &imported,
+        scene: &prepared.scene,
+    });
 }
 
 pub struct Subject<'a> {
@@ -73,7 +76,8 @@ impl Subject<'_> {
 
     /// With `samples` a pixel and a seed that no other render has.
     pub fn reference(&self, samples: u32) -> Film {
-        self.uniform(&self.settings(Pattern::Sobol, samples, 0xffff_ffff)).film
+        self.uniform(&self.settings(Pattern::Sobol, samples, 0xffff_ffff))
+            .film
     }
 }
 

@@ -1,5 +1,7 @@
 //! `halfshade render`: scene to picture.
 
+use std::time::{Duration, Instant};
+
 use halfshade::camera::Camera;
 use halfshade::film::{ErrorEstimate, Film, Rect, StoppedBy};
 use halfshade::import::{Imported, import};
@@ -48,7 +50,8 @@ fn run_on_pool(
 
     let mut imported = load(options)?;
     let crop = crop(options, &imported.settings)?;
-    let limits = limits(options, &mut imported.settings, crop, clock.begin())?;
+    let deadline = deadline(options, targets, crop, &clock);
+    let limits = limits(options, &mut imported.settings, deadline)?;
     let settings = &imported.settings;
     let camera = camera(options, &imported.scene)?;
     seconds.import = clock.step();
@@ -89,6 +92,19 @@ fn run_on_pool(
         error: film.error(),
     };
     finish(options, targets, &done)
+}
+
+/// When the samples have to be there, so that the files are written in time.
+fn deadline(
+    options: &RenderOptions,
+    targets: Option<&Targets>,
+    crop: Rect,
+    clock: &StepClock,
+) -> Option<Instant> {
+    let (seconds, targets) = (options.limits.time?, targets?);
+    let writing = targets.writing_seconds(crop.area(), &options.output.layers);
+    let rendering = Duration::try_from_secs_f64((seconds - writing).max(0.0)).ok()?;
+    clock.begin().checked_add(rendering)
 }
 
 /// The scene, with settings that follow the options.
@@ -169,10 +185,15 @@ fn watched(job: &Job, limits: &Limits, interrupt: &Interrupt, console: Console) 
     interrupt.rendering_begins();
     announce_samples(job, limits, console);
     let progress = RenderProgress::new(console.shows_progress());
-    let film = render_within(job, limits, interrupt.is_requested(), &|event| match event {
-        Event::Progress(p) => progress.observe(p),
-        Event::Forecast(forecast) => progress.suspend(|| console.say(forecast)),
-    });
+    let film = render_within(
+        job,
+        limits,
+        interrupt.is_requested(),
+        &|event| match event {
+            Event::Progress(p) => progress.observe(p),
+            Event::Forecast(forecast) => progress.suspend(|| console.say(forecast)),
+        },
+    );
     if film.stopped_by != StoppedBy::Interrupt {
         interrupt.rendering_is_complete();
     }

@@ -46,7 +46,9 @@ impl Course {
         let mut rays = RayCounts::default();
         tiles.iter().for_each(|tile| rays.add(&tile.rays));
         let pixels = job.crop.area();
-        let taken: u64 = tiles.first().map_or(0, |t| t.taken[0].map(u64::from).iter().sum());
+        let taken: u64 = tiles
+            .first()
+            .map_or(0, |t| t.taken[0].map(u64::from).iter().sum());
         Self::Uniform(Uniform {
             pattern,
             pixels,
@@ -70,7 +72,10 @@ impl Course {
             Self::Uniform(uniform) => uniform.furthest(within),
             Self::Adaptive(allotment) => {
                 let scale = allotment.scale(within);
-                Step { reach: f64::from(scale), outcome: allotment.at(scale) }
+                Step {
+                    reach: f64::from(scale),
+                    outcome: allotment.at(scale),
+                }
             }
         }
     }
@@ -79,7 +84,7 @@ impl Course {
     pub fn aim(&self, tiles: &mut [Tile], step: &Step) {
         match self {
             Self::Uniform(uniform) => aim_all(tiles, uniform.halves(step.reach as u64)),
-            Self::Adaptive(allotment) => allotment.aim(tiles, step.reach as f32),
+            Self::Adaptive(allotment) => allotment.aim(tiles, step.reach),
         }
     }
 }
@@ -130,7 +135,10 @@ impl Uniform {
             }
         }
         let samples = rounds(low);
-        Step { reach: samples as f64, outcome: self.outcome(samples) }
+        Step {
+            reach: samples as f64,
+            outcome: self.outcome(samples),
+        }
     }
 
     fn halves(&self, samples: u64) -> Halves {

@@ -26,7 +26,12 @@ pub struct Forecast {
 impl fmt::Display for Forecast {
     /// Like `about 41 s for 0.01, at present 0.034`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { seconds, error, error_now, .. } = self;
+        let Self {
+            seconds,
+            error,
+            error_now,
+            ..
+        } = self;
         let seconds = Significant(*seconds);
         let (error, error_now) = (Significant(*error), Significant(*error_now));
         match self.stopped_by {
@@ -66,7 +71,10 @@ pub(super) struct Pace {
 
 impl Pace {
     pub fn start() -> Self {
-        Self { start: Instant::now(), warm: None }
+        Self {
+            start: Instant::now(),
+            warm: None,
+        }
     }
 
     /// Seconds since the start.
@@ -82,7 +90,10 @@ impl Pace {
     /// When `rays` in all will be there, in seconds from the start, after `now` rays.
     pub fn seconds_at(&self, rays: f64, now: f64) -> f64 {
         let seconds = self.seconds();
-        let (since, before) = self.warm.filter(|(_, before)| *before < now).unwrap_or((0.0, 0.0));
+        let (since, before) = self
+            .warm
+            .filter(|(_, before)| *before < now)
+            .unwrap_or((0.0, 0.0));
         seconds + (rays - now) * (seconds - since) / (now - before).max(1.0)
     }
 
@@ -113,14 +124,16 @@ impl Bounds<'_> {
     }
 
     pub fn is_in_time(&self, outcome: &Outcome) -> bool {
-        self.limits.deadline.is_none_or(|deadline| {
-            self.seconds(outcome) <= self.pace.seconds_until(deadline)
-        })
+        self.limits
+            .deadline
+            .is_none_or(|deadline| self.seconds(outcome) <= self.pace.seconds_until(deadline))
     }
 
     /// Whether the error is still larger than what is asked for, times `share`.
     pub fn is_short_of(&self, outcome: &Outcome, share: f64) -> bool {
-        self.limits.error.is_none_or(|error| self.error(outcome) > share * error)
+        self.limits
+            .error
+            .is_none_or(|error| self.error(outcome) > share * error)
     }
 
     fn seconds(&self, outcome: &Outcome) -> f64 {
@@ -136,7 +149,11 @@ impl Bounds<'_> {
         // The limit that one step further breaks.
         let mut beyond = end;
         beyond.rays += 0.01 * end.rays;
-        let stopped_by = if self.limits.error.is_some_and(|e| self.error(&end) <= 1.02 * e) {
+        let stopped_by = if self
+            .limits
+            .error
+            .is_some_and(|e| self.error(&end) <= 1.02 * e)
+        {
             StoppedBy::Error
         } else if !self.is_in_time(&beyond) {
             StoppedBy::Time
@@ -166,9 +183,15 @@ mod tests {
             samples: 1,
             stopped_by: StoppedBy::Error,
         };
-        assert_eq!(forecast.to_string(), "about 41 s for 0.01, at present 0.0344");
+        assert_eq!(
+            forecast.to_string(),
+            "about 41 s for 0.01, at present 0.0344"
+        );
         forecast.stopped_by = StoppedBy::Time;
-        assert_eq!(forecast.to_string(), "about 0.01 after 41 s, at present 0.0344");
+        assert_eq!(
+            forecast.to_string(),
+            "about 0.01 after 41 s, at present 0.0344"
+        );
         assert_eq!(Significant(1234.5).to_string(), "1234");
         assert_eq!(Significant(1.2e-12).to_string(), "1.2e-12");
     }

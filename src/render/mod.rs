@@ -213,7 +213,10 @@ impl Run<'_> {
 
     /// All that is left of a fixed number of samples.
     fn remaining_passes(&mut self) -> StoppedBy {
-        let most = dealt(self.job.settings.sampling.pattern, u64::from(self.limits.samples));
+        let most = dealt(
+            self.job.settings.sampling.pattern,
+            u64::from(self.limits.samples),
+        );
         let mut samples = FIRST_SAMPLES;
         loop {
             samples = samples.saturating_mul(4).min(most[0]);
@@ -269,7 +272,8 @@ impl Run<'_> {
         let forecast = bounds.forecast(course);
         self.total.store(forecast.samples, Ordering::Relaxed);
         let share = self.pace.seconds() / forecast.seconds;
-        if self.limits.is_open() && error.is_some() && !self.has_forecast && share >= FORECAST_SHARE {
+        if self.limits.is_open() && error.is_some() && !self.has_forecast && share >= FORECAST_SHARE
+        {
             self.has_forecast = true;
             (self.observe)(Event::Forecast(forecast));
         }
@@ -279,7 +283,8 @@ impl Run<'_> {
             o.samples <= grown(GROWTH) && bounds.is_in_time(o) && bounds.is_short_of(o, 0.99)
         });
         // Near a limit passes would become ever smaller; and some courses have no small steps.
-        let least = LEAST_GROWTHS.map(|growth| course.furthest(|o| o.samples <= grown(growth)));
+        let least = LEAST_GROWTHS.into_iter();
+        let least = least.map(|growth| course.furthest(|o| o.samples <= grown(growth)));
         std::iter::once(wanted)
             .filter(|step| step.outcome.samples > grown(LEAST_GROWTHS[0]))
             .chain(least)

@@ -114,6 +114,7 @@ impl SamplingConfig {
 
     /// Camera samples of the largest set of a pixel.
     pub fn samples_per_set(&self) -> u32 {
-        self.pattern.cells(self.samples.div_ceil(self.pattern.sets()))
+        self.pattern
+            .cells(self.samples.div_ceil(self.pattern.sets()))
     }
 }
