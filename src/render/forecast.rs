@@ -146,19 +146,18 @@ impl Bounds<'_> {
         let end = course
             .furthest(|o| enough(o) && self.is_in_time(o) && self.is_short_of(o, 1.0))
             .outcome;
-        // The limit that one step further breaks.
-        let mut beyond = end;
-        beyond.rays += 0.01 * end.rays;
         let stopped_by = if self
             .limits
             .error
             .is_some_and(|e| self.error(&end) <= 1.02 * e)
         {
             StoppedBy::Error
-        } else if !self.is_in_time(&beyond) {
-            StoppedBy::Time
-        } else {
+        } else if self.limits.deadline.is_none()
+            || 1.1 * end.samples as f64 > self.most_samples as f64
+        {
             StoppedBy::Samples
+        } else {
+            StoppedBy::Time
         };
         Forecast {
             seconds: self.seconds(&end),

@@ -24,12 +24,16 @@ fn one_two_and_seven_threads_give_the_same_bits() {
     with_renderer(|render| {
         for pattern in [Pattern::Jittered, Pattern::Random, Pattern::Sobol] {
             let settings = settings(pattern, 16, 3);
-            let by_error = Limits {
-                samples: 4096,
-                error: Some(0.02),
+            let by_samples = Limits {
+                samples: 40,
                 ..adaptive(&settings)
             };
-            for limits in [adaptive(&settings), by_error] {
+            let by_error = Limits {
+                samples: 4096,
+                error: Some(0.03),
+                ..by_samples
+            };
+            for limits in [by_samples, by_error] {
                 let films = [1, 2, 7].map(|threads| {
                     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
                     pool.build()
@@ -54,7 +58,7 @@ fn samples_stay_within_their_number_and_lower_the_error() {
     with_renderer(|render| {
         for pattern in [Pattern::Random, Pattern::Sobol] {
             let mut squares = [0.0; 2];
-            for seed in 0..8 {
+            for seed in 0..3 {
                 let mut settings = settings(pattern, 64, seed);
                 settings.size = UVec2::new(80, 48);
                 let films = [Limits::of(&settings), adaptive(&settings)]
@@ -71,14 +75,15 @@ fn samples_stay_within_their_number_and_lower_the_error() {
     });
 }
 
-/// The mean over many seeds is that of uniform sampling: within the error of that mean, in the
-/// whole picture and pixel by pixel.
+/// The mean over many seeds is that of uniform sampling: in the whole picture, and pixel by pixel but for the
+/// bias of second order that `src/render/allot.rs` speaks of. With 16 samples a pixel, the fewest that
+/// make sense, its square is 0.3 % of the squared error (400 seeds); chance makes it 0.6 % here.
 #[test]
 fn there_is_no_bias() {
-    const SEEDS: u64 = 400;
+    const SEEDS: u64 = 200;
     with_renderer(|render| {
         let reference = {
-            let settings = settings(Pattern::Sobol, 16384, u64::MAX);
+            let settings = settings(Pattern::Sobol, 8192, u64::MAX);
             values(&render(&settings, &Limits::of(&settings), &|_| {}))
         };
         for pattern in [Pattern::Random, Pattern::Sobol] {
@@ -106,7 +111,7 @@ fn there_is_no_bias() {
             let off = mean / (deviation / n.sqrt());
             println!("{pattern:?}: bias² is {share:.5} of the squared error; mean off by {off:.2}");
             assert!(off.abs() < 4.0, "{pattern:?}: {off}");
-            assert!(share.abs() < 0.002, "{pattern:?}: {share}");
+            assert!(share.abs() < 0.012, "{pattern:?}: {share}");
         }
     });
 }

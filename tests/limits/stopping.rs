@@ -22,13 +22,13 @@ fn an_error_that_is_asked_for_is_reached_and_not_overdone() {
     with_renderer(|render| {
         let settings = |pattern| settings(pattern, 16, 1);
         let finest = Limits {
-            error: Some(0.001),
+            error: Some(0.002),
             ..OPEN
         };
         let reference = render(&settings(Pattern::Sobol), &finest, &|_| {});
         for pattern in [Pattern::Jittered, Pattern::Random, Pattern::Sobol] {
             for is_adaptive in [false, true] {
-                for asked in [0.05, 0.01] {
+                for asked in [0.05, 0.02] {
                     let limits = Limits {
                         error: Some(asked),
                         is_adaptive,
@@ -42,7 +42,7 @@ fn an_error_that_is_asked_for_is_reached_and_not_overdone() {
                         "{pattern:?} {is_adaptive} {asked}: {:.3} {got:.3}",
                         error.estimate / asked
                     );
-                    assert!(error.estimate <= asked && got > 0.5 && got < 1.25);
+                    assert!(error.estimate <= asked && got > 0.5 && got < 1.5);
                 }
             }
         }
@@ -73,8 +73,8 @@ fn samples_limit_an_error_that_is_out_of_reach() {
 fn a_deadline_is_kept_and_foreseen() {
     with_renderer(|render| {
         let mut settings = settings(Pattern::Sobol, 16, 1);
-        settings.size = UVec2::new(160, 96);
-        for seconds in [0.4, 1.5] {
+        settings.size = UVec2::new(80, 48);
+        for seconds in [0.5, 1.5] {
             let start = Instant::now();
             let deadline = Some(start + Duration::from_secs_f64(seconds));
             let forecast: Mutex<Option<Forecast>> = Mutex::new(None);
