@@ -8,7 +8,7 @@ use halfshade::sampling::Pattern;
 use crate::subject::{Subject, with_scene};
 
 /// Seeds over which squared errors and times are averaged.
-const SEEDS: u64 = 3;
+const SEEDS: u64 = 2;
 
 pub fn run(scenes: &[String]) {
     println!(
@@ -16,7 +16,7 @@ pub fn run(scenes: &[String]) {
     );
     for name in ["penumbra", "house", "cornell", "glass", "terrain"] {
         if scenes.is_empty() || scenes.iter().any(|s| s == name) {
-            with_scene(name, UVec2::new(320, 180), |subject| {
+            with_scene(name, UVec2::new(240, 135), |subject| {
                 of_scene(name, subject)
             });
         }
@@ -55,7 +55,7 @@ fn at_cost(few: Measured, more: Measured, cost: f64) -> f64 {
 }
 
 fn of_scene(name: &str, subject: &Subject) {
-    for samples in [16, 64, 256] {
+    for samples in [16, 64] {
         let uniform = measure(subject, samples, false);
         let adaptive = measure(subject, samples, true);
         let more = measure(subject, 2 * samples, false);

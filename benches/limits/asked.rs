@@ -15,9 +15,7 @@ pub fn run(scenes: &[String]) {
     );
     for name in ["penumbra", "house", "cornell", "glass", "terrain"] {
         if scenes.is_empty() || scenes.iter().any(|s| s == name) {
-            with_scene(name, UVec2::new(320, 180), |subject| {
-                of_scene(name, subject)
-            });
+            with_scene(name, UVec2::new(160, 90), |subject| of_scene(name, subject));
         }
     }
 }
@@ -64,7 +62,7 @@ fn of_scene(name: &str, subject: &Subject) {
                 false,
             );
         }
-        for seconds in [1.0, 3.0, 9.0] {
+        for seconds in [1.0, 3.0, 6.0] {
             let deadline = Some(Instant::now() + Duration::from_secs_f64(seconds));
             print(format!("{seconds} s"), Limits { deadline, ..limits }, true);
         }
