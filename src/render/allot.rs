@@ -30,7 +30,7 @@ const LEAST_SHARE: f64 = 0.125;
 const MOST: u32 = 1 << 28;
 
 /// Scores are kept as whole numbers of this part of an octave, so that halves alike can be counted together.
-const STEPS_PER_OCTAVE: f64 = 8.0;
+const STEPS_PER_OCTAVE: f64 = 16.0;
 /// Weights below this are as good as 0.
 const LEAST_WEIGHT: f64 = 1e-30;
 
