@@ -122,7 +122,11 @@ impl<S> SpanTest<S> {
         S: Lanes<W>,
     {
         let axis = |k: usize| {
-            let (near, far) = if span.towards_lower[k] { (0, 1) } else { (1, 0) };
+            let (near, far) = if span.towards_lower[k] {
+                (0, 1)
+            } else {
+                (1, 0)
+            };
             [span.origin[k][near], span.origin[k][far]]
         };
         let origins = [axis(0), axis(1), axis(2)];
@@ -336,9 +340,7 @@ where
                 let Some(caster) = &bundle.casters[ray] else {
                     continue;
                 };
-                let Some(crossing) = caster
-                    .exact()
-                    .cross(&block.corners_of(lane, bundle.axes))
+                let Some(crossing) = caster.exact().cross(&block.corners_of(lane, bundle.axes))
                 else {
                     continue;
                 };
@@ -372,9 +374,7 @@ where
 }
 
 /// The lanes that hold rays.
-fn bundle_lanes<const W: usize>(
-    bundle: &Bundle<W>,
-) -> impl Iterator<Item = (usize, &Caster)> {
+fn bundle_lanes<const W: usize>(bundle: &Bundle<W>) -> impl Iterator<Item = (usize, &Caster)> {
     let casters = bundle.casters.iter().enumerate();
     casters.filter_map(|(lane, caster)| Some((lane, caster.as_ref()?)))
 }

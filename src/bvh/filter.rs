@@ -140,11 +140,7 @@ impl<S> Filter<S> {
 /// e = 24u(R + 5uZ)(R + Z), is more. A triangle is out where one edge function is certainly
 /// negative and another certainly positive. A NaN makes nothing certain.
 #[inline(always)]
-pub(super) fn possible<S, const W: usize>(
-    [a, b, c]: [[S; 3]; 3],
-    depths: [S; 2],
-    lanes: u32,
-) -> u32
+pub(super) fn possible<S, const W: usize>([a, b, c]: [[S; 3]; 3], depths: [S; 2], lanes: u32) -> u32
 where
     S: Lanes<W>,
 {
@@ -178,11 +174,7 @@ pub(super) fn shear<S: Lanes<W>, const W: usize>(
     let z = point[2].sub(origin[2]);
     let x = point[0].sub(origin[0]);
     let y = point[1].sub(origin[1]);
-    [
-        z.neg_mul_add(slopes[0], x),
-        z.neg_mul_add(slopes[1], y),
-        z,
-    ]
+    [z.neg_mul_add(slopes[0], x), z.neg_mul_add(slopes[1], y), z]
 }
 
 /// Twice the area between the origin, `p` and `q`.

@@ -153,7 +153,10 @@ impl Bvh {
 
     /// [`Bvh::any_hit`] of each ray, into the place of the same number in `is_hit`.
     pub fn any_hits(&self, rays: &[Ray], is_hit: &mut [bool]) {
-        for (rays, is_hit) in rays.chunks(self.width()).zip(is_hit.chunks_mut(self.width())) {
+        for (rays, is_hit) in rays
+            .chunks(self.width())
+            .zip(is_hit.chunks_mut(self.width()))
+        {
             let mut hits = [None; 16];
             if self.cast_bundle::<true>(rays, &mut hits) {
                 for (is_hit, hit) in is_hit.iter_mut().zip(hits) {
