@@ -83,15 +83,6 @@ pub(super) struct Window {
     pub depth: [f32; 2],
 }
 
-impl Window {
-    /// Empty.
-    pub const NONE: Self = Self {
-        near: f32::INFINITY,
-        far: f32::NEG_INFINITY,
-        depth: [0.0; 2],
-    };
-}
-
 impl Caster {
     /// `None` where `ray` is not finite or has no direction; it may be `None`, too, where it
     /// leaves `bounds` behind.
@@ -180,12 +171,6 @@ impl Caster {
         } else {
             (f64::from(t) * self.to_distance) as f32
         }
-    }
-
-    /// Whether boxes are tested with the ray as it is.
-    #[inline(always)]
-    pub fn is_ordinary(&self) -> bool {
-        self.to_distance == 1.0
     }
 
     /// For the test that decides.

@@ -47,16 +47,16 @@ impl<S> Depth<S> {
         }
     }
 
-    /// Which crossings are not between two depths for certain. The sign of A is certain beyond 8e.
+    /// Which crossings are not in the window for certain. The sign of A is certain beyond 8e.
     #[inline(always)]
-    fn certainly_outside<const W: usize>(&self, [low, high]: [S; 2]) -> u32
+    fn certainly_outside<const W: usize>(&self, window: &Window) -> u32
     where
         S: Lanes<W>,
     {
         let twice_error = self.error.add(self.error);
-        let (value, error) = self.beyond(low, twice_error);
+        let (value, error) = self.beyond(S::splat(window.depth[0]), twice_error);
         let before = error.lt(S::splat(0.0).sub(value));
-        let (value, error) = self.beyond(high, twice_error);
+        let (value, error) = self.beyond(S::splat(window.depth[1]), twice_error);
         (before | error.lt(value)) & twice_error.lt(self.area)
     }
 
@@ -101,80 +101,59 @@ impl<S> Filter<S> {
         }
     }
 
-    /// The triangles of `block` that are not certain to be missed within `window`.
+    /// The triangles of `block` that are not certain to be missed: a superset of those that
+    /// [`ExactRay::cross`](super::triangle::ExactRay::cross) accepts within the window.
+    ///
+    /// The same sheared edge functions as there, in `f32`. With R the largest sheared and Z
+    /// the largest main coordinate, each sheared coordinate is off by at most 2uR + 5uZ, an
+    /// edge function hence by less than 12uR² + 20uRZ + 60u²Z²; what is compared with,
+    /// e = 24u(R + 5uZ)(R + Z), is more. A triangle is out where one edge function is certainly
+    /// negative and another certainly positive. A NaN makes nothing certain.
     #[inline(always)]
     pub fn test<const W: usize>(&self, block: &Block<W>, count: u32, window: &Window) -> u32
     where
         S: Lanes<W>,
     {
-        let corners = [
-            self.shear(&block.corners[0]),
-            self.shear(&block.corners[1]),
-            self.shear(&block.corners[2]),
-        ];
-        let depths = [S::splat(window.depth[0]), S::splat(window.depth[1])];
-        possible(corners, depths, u32::MAX >> (32 - count))
+        let a = self.shear(&block.corners[0]);
+        let b = self.shear(&block.corners[1]);
+        let c = self.shear(&block.corners[2]);
+        let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
+
+        let x = a[0].max_abs(b[0]).max_abs(c[0]);
+        let y = a[1].max_abs(b[1]).max_abs(c[1]);
+        let z = a[2].max_abs(b[2]).max_abs(c[2]);
+        let r = x.max(y);
+        let error = z
+            .mul_add(S::splat(5.0 * UNIT_ROUNDOFF), r)
+            .mul(S::splat(24.0 * UNIT_ROUNDOFF))
+            .mul_add(r.add(z), S::splat(f32::MIN_POSITIVE));
+        let minus_error = S::splat(0.0).sub(error);
+        let (least, most) = (u.min(v).min(w), u.max(v).max(w));
+        let lanes = !(least.lt(minus_error) & error.lt(most)) & (u32::MAX >> (32 - count));
+        if lanes == 0 {
+            return 0;
+        }
+
+        let depth = Depth::new([u, v, w], [a[2], b[2], c[2]], error, z);
+        lanes & !depth.certainly_outside(window)
     }
 
-    /// One corner of each triangle, sheared.
+    /// One corner of each triangle, moved so that the ray starts at the origin and sheared so
+    /// that it runs along the last axis.
     #[inline(always)]
     fn shear<const W: usize>(&self, points: &[[f32; W]; 3]) -> [S; 3]
     where
         S: Lanes<W>,
     {
-        let point = [
-            S::load(&points[self.axes[0]]),
-            S::load(&points[self.axes[1]]),
-            S::load(&points[self.axes[2]]),
-        ];
-        shear(point, &self.origin, &self.shear)
+        let z = S::load(&points[self.axes[2]]).sub(self.origin[2]);
+        let x = S::load(&points[self.axes[0]]).sub(self.origin[0]);
+        let y = S::load(&points[self.axes[1]]).sub(self.origin[1]);
+        [
+            z.neg_mul_add(self.shear[0], x),
+            z.neg_mul_add(self.shear[1], y),
+            z,
+        ]
     }
-}
-
-/// Those of `lanes` in which a sheared triangle is not certain to be missed between two depths: a
-/// superset of what [`ExactRay::cross`](super::triangle::ExactRay::cross) accepts there.
-///
-/// The same sheared edge functions as there, in `f32`. With R the largest sheared and Z
-/// the largest main coordinate, each sheared coordinate is off by at most 2uR + 5uZ, an
-/// edge function hence by less than 12uR² + 20uRZ + 60u²Z²; what is compared with,
-/// e = 24u(R + 5uZ)(R + Z), is more. A triangle is out where one edge function is certainly
-/// negative and another certainly positive. A NaN makes nothing certain.
-#[inline(always)]
-pub(super) fn possible<S, const W: usize>([a, b, c]: [[S; 3]; 3], depths: [S; 2], lanes: u32) -> u32
-where
-    S: Lanes<W>,
-{
-    let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
-    let x = a[0].max_abs(b[0]).max_abs(c[0]);
-    let y = a[1].max_abs(b[1]).max_abs(c[1]);
-    let z = a[2].max_abs(b[2]).max_abs(c[2]);
-    let r = x.max(y);
-    let error = z
-        .mul_add(S::splat(5.0 * UNIT_ROUNDOFF), r)
-        .mul(S::splat(24.0 * UNIT_ROUNDOFF))
-        .mul_add(r.add(z), S::splat(f32::MIN_POSITIVE));
-    let minus_error = S::splat(0.0).sub(error);
-    let (least, most) = (u.min(v).min(w), u.max(v).max(w));
-    let lanes = !(least.lt(minus_error) & error.lt(most)) & lanes;
-    if lanes == 0 {
-        return 0;
-    }
-    let depth = Depth::new([u, v, w], [a[2], b[2], c[2]], error, z);
-    lanes & !depth.certainly_outside(depths)
-}
-
-/// Moves a point so that the ray starts at the origin, and shears it so that the ray runs along
-/// the last axis; `point` and `origin` in the caster's order of axes.
-#[inline(always)]
-pub(super) fn shear<S: Lanes<W>, const W: usize>(
-    point: [S; 3],
-    origin: &[S; 3],
-    slopes: &[S; 2],
-) -> [S; 3] {
-    let z = point[2].sub(origin[2]);
-    let x = point[0].sub(origin[0]);
-    let y = point[1].sub(origin[1]);
-    [z.neg_mul_add(slopes[0], x), z.neg_mul_add(slopes[1], y), z]
 }
 
 /// Twice the area between the origin, `p` and `q`.

@@ -6,7 +6,7 @@ use super::count::{Counter, Silent};
 use super::hit::{Hit, Search};
 use super::layout::{ChildRef, Node};
 use super::simd::{Job, Lanes, Level, Run};
-use super::traverse::{BoxTest, Leaves, Stop, Walk};
+use super::traverse::{Leaves, Stop, Walk};
 use super::tree::Bvh;
 use crate::math::{Aabb, DAffine3, DVec3, Ray, UNIT_ROUNDOFF, Vec3};
 
@@ -315,16 +315,21 @@ impl<const ANY: bool, C: Counter> Job<WIDTH> for Step<'_, ANY, C> {
             walk,
             counter,
         } = self;
-        walk.next::<S, ANY, WIDTH>(nodes, &BoxTest::new(ray), &mut Instances, counter)
+        walk.next::<S, ANY, WIDTH, _>(nodes, ray, &Instances, counter)
     }
 }
 
 /// The leaves of the tree over instances: each is worth a look.
 struct Instances;
 
-impl Leaves for Instances {
+impl Leaves<WIDTH> for Instances {
+    type Test<S> = ();
+
     #[inline(always)]
-    fn test(&mut self, _: ChildRef, _: &Window) -> u32 {
+    fn constants<S: Lanes<WIDTH>>(&self, _: &Caster) {}
+
+    #[inline(always)]
+    fn test<S: Lanes<WIDTH>>(&self, (): &(), _: ChildRef, _: &Window) -> u32 {
         1
     }
 

@@ -45,14 +45,6 @@ pub(super) struct Search {
 }
 
 impl Search {
-    /// Nowhere.
-    pub const NONE: Self = Self {
-        t_min: 0.0,
-        t_best: 0.0,
-        key_best: 0,
-        hit: None,
-    };
-
     /// Everything in `t_min < t < t_max` that is not behind the origin.
     pub fn new(t_min: f32, t_max: f32) -> Self {
         Self {

@@ -6,7 +6,6 @@
 //! `caster` shows why they never decide wrongly.
 
 mod build;
-mod bundle;
 mod caster;
 mod count;
 mod filter;

@@ -8,15 +8,8 @@ use super::count::Counter;
 use super::layout::{ChildRef, Node};
 use super::simd::{Entry, Lanes, Stack, prefetch};
 
-/// Which children of a node are to be visited.
-pub(super) trait Boxes<S, const W: usize> {
-    /// Those that may be met from `near` to `far`, and where they are entered at the earliest.
-    /// `#[inline(always)]`, as all that a walk calls.
-    fn test(&self, node: &Node<W>, near: S, far: S) -> (u32, S);
-}
-
 /// A ray's constants for the box test, in vectors.
-pub(super) struct BoxTest<S> {
+struct BoxTest<S> {
     axes: [AxisTest<S>; 3],
 }
 
@@ -69,7 +62,7 @@ impl<S> AxisTest<S> {
 
 impl<S> BoxTest<S> {
     #[inline(always)]
-    pub fn new<const W: usize>(ray: &Caster) -> Self
+    fn new<const W: usize>(ray: &Caster) -> Self
     where
         S: Lanes<W>,
     {
@@ -81,11 +74,13 @@ impl<S> BoxTest<S> {
             ],
         }
     }
-}
 
-impl<S: Lanes<W>, const W: usize> Boxes<S, W> for BoxTest<S> {
+    /// Which children the ray may meet within `near` to `far`, and where it enters them.
     #[inline(always)]
-    fn test(&self, node: &Node<W>, near: S, far: S) -> (u32, S) {
+    fn test<const W: usize>(&self, node: &Node<W>, near: S, far: S) -> (u32, S)
+    where
+        S: Lanes<W>,
+    {
         let [x, y, z] = &self.axes;
         // In pairs: the next step of the walk waits for the result.
         let enter = x.enter(node).max(y.enter(node));
@@ -96,11 +91,15 @@ impl<S: Lanes<W>, const W: usize> Boxes<S, W> for BoxTest<S> {
     }
 }
 
-/// What stands at the leaves of a walk. Its functions must be `#[inline(always)]`: one of its own,
-/// such as a closure may become, would lack the instruction set of the walk.
-pub(super) trait Leaves {
+/// What stands at the leaves of a walk.
+pub(super) trait Leaves<const W: usize> {
+    /// A ray's constants for it, in vectors.
+    type Test<S>;
+    /// Makes them. As all of these functions `#[inline(always)]`: one of its own, such as a
+    /// closure may become, would lack the instruction set of the walk.
+    fn constants<S: Lanes<W>>(&self, ray: &Caster) -> Self::Test<S>;
     /// Which things in `leaf` may be hit within `window`: where there are any the walk pauses.
-    fn test(&mut self, leaf: ChildRef, window: &Window) -> u32;
+    fn test<S: Lanes<W>>(&self, test: &Self::Test<S>, leaf: ChildRef, window: &Window) -> u32;
     /// Is told that `leaf` will be visited soon.
     fn announce(&self, leaf: ChildRef);
 }
@@ -136,16 +135,18 @@ impl Walk {
     ///
     /// With `ANY` children are not sorted beyond the first two.
     #[inline(always)]
-    pub fn next<S, const ANY: bool, const W: usize>(
+    pub fn next<S, const ANY: bool, const W: usize, L: Leaves<W>>(
         &mut self,
         nodes: &[Node<W>],
-        boxes: &impl Boxes<S, W>,
-        leaves: &mut impl Leaves,
+        ray: &Caster,
+        leaves: &L,
         counter: &mut impl Counter,
     ) -> Option<Stop>
     where
         S: Lanes<W>,
     {
+        let boxes = BoxTest::<S>::new(ray);
+        let test = leaves.constants::<S>(ray);
         let (near, far) = (S::splat(self.window.near), S::splat(self.window.far));
         let stack = &mut self.stack;
         loop {
@@ -170,7 +171,7 @@ impl Walk {
             }
             if current.is_leaf() {
                 counter.leaf();
-                let lanes = leaves.test(current, &self.window);
+                let lanes = leaves.test(&test, current, &self.window);
                 if lanes != 0 {
                     return Some(Stop {
                         leaf: current,

@@ -1,7 +1,6 @@
 //! A tree of one mesh, in the width that suits the processor.
 
 use super::build::{Builder, build};
-use super::bundle::cast_bundle;
 use super::caster::{Caster, Window};
 use super::count::{Counter, Silent, TraversalCounts};
 use super::filter::Filter;
@@ -9,7 +8,7 @@ use super::hit::{Hit, Search, key};
 use super::layout::{Block, ChildRef, Node, Tree};
 use super::simd::{Job, Lanes, Level, Run, prefetch};
 use super::stats::TreeStats;
-use super::traverse::{BoxTest, Leaves, Stop, Walk};
+use super::traverse::{Leaves, Stop, Walk};
 use crate::math::{Aabb, Ray, Vec3};
 
 /// Which vectors a tree is laid out for and traced with. Hits are the same with all.
@@ -135,54 +134,6 @@ impl Bvh {
     pub fn any_hit_counted(&self, ray: &Ray, counts: &mut TraversalCounts) -> bool {
         self.search::<true, _>(ray, &|_: &Hit| true, counts)
             .is_some()
-    }
-
-    /// [`Bvh::closest_hit`] of each ray, into the place of the same number in `hits`.
-    ///
-    /// Rays that start close to each other and run alike are traced together: camera rays of
-    /// neighbouring samples, shadow rays of neighbouring points to one light.
-    pub fn closest_hits(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
-        for (rays, hits) in rays.chunks(self.width()).zip(hits.chunks_mut(self.width())) {
-            if !self.cast_bundle::<false>(rays, hits) {
-                for (ray, hit) in rays.iter().zip(hits) {
-                    *hit = self.closest_hit(ray);
-                }
-            }
-        }
-    }
-
-    /// [`Bvh::any_hit`] of each ray, into the place of the same number in `is_hit`.
-    pub fn any_hits(&self, rays: &[Ray], is_hit: &mut [bool]) {
-        for (rays, is_hit) in rays
-            .chunks(self.width())
-            .zip(is_hit.chunks_mut(self.width()))
-        {
-            let mut hits = [None; 16];
-            if self.cast_bundle::<true>(rays, &mut hits) {
-                for (is_hit, hit) in is_hit.iter_mut().zip(hits) {
-                    *is_hit = hit.is_some();
-                }
-            } else {
-                for (ray, is_hit) in rays.iter().zip(is_hit) {
-                    *is_hit = self.any_hit(ray);
-                }
-            }
-        }
-    }
-
-    fn width(&self) -> usize {
-        match &self.body {
-            Body::Eight(_) => 8,
-            Body::Sixteen(_) => 16,
-        }
-    }
-
-    /// Traces up to [`Bvh::width`] rays together; `false` where they do not go together.
-    fn cast_bundle<const ANY: bool>(&self, rays: &[Ray], hits: &mut [Option<Hit>]) -> bool {
-        match &self.body {
-            Body::Eight(tree) => cast_bundle::<ANY, 8>(self.level, tree, self.reach, rays, hits),
-            Body::Sixteen(tree) => cast_bundle::<ANY, 16>(self.level, tree, self.reach, rays, hits),
-        }
     }
 
     /// Around all triangles that can be hit; empty where there are none.
@@ -348,29 +299,28 @@ impl<const ANY: bool, const W: usize, C: Counter> Job<W> for Step<'_, ANY, W, C>
             walk,
             counter,
         } = self;
-        let mut blocks = Blocks {
-            blocks: &tree.blocks,
-            filter: Filter::<S>::new(ray),
-        };
-        walk.next::<S, ANY, W>(&tree.nodes, &BoxTest::new(ray), &mut blocks, counter)
+        walk.next::<S, ANY, W, _>(&tree.nodes, ray, &Blocks(&tree.blocks), counter)
     }
 }
 
 /// The leaves of a tree over triangles.
-struct Blocks<'a, const W: usize, S> {
-    blocks: &'a [Block<W>],
-    filter: Filter<S>,
-}
+struct Blocks<'a, const W: usize>(&'a [Block<W>]);
 
-impl<const W: usize, S: Lanes<W>> Leaves for Blocks<'_, W, S> {
+impl<const W: usize> Leaves<W> for Blocks<'_, W> {
+    type Test<S> = Filter<S>;
+
     #[inline(always)]
-    fn test(&mut self, leaf: ChildRef, window: &Window) -> u32 {
-        let block = &self.blocks[leaf.index()];
-        self.filter.test(block, leaf.count(), window)
+    fn constants<S: Lanes<W>>(&self, ray: &Caster) -> Filter<S> {
+        Filter::new(ray)
+    }
+
+    #[inline(always)]
+    fn test<S: Lanes<W>>(&self, filter: &Filter<S>, leaf: ChildRef, window: &Window) -> u32 {
+        filter.test(&self.0[leaf.index()], leaf.count(), window)
     }
 
     #[inline(always)]
     fn announce(&self, leaf: ChildRef) {
-        prefetch(self.blocks, leaf.index());
+        prefetch(self.0, leaf.index());
     }
 }
