@@ -111,7 +111,7 @@ fn wrong_arguments_are_named_and_exit_with_2() {
         (&["render", "scene.obj", "--set", "film.size"], "PATH=VALUE"),
         (&["render", "scene.obj", "--exposure", "nan"], "stops"),
         (&["render", "scene.obj", "--threads", "0"], "1.."),
-        (&["render", "scene.obj", "--time", "3"], "--time"),
+        (&["render", "scene.obj", "--time", "0"], "--time"),
         (&["render", "scene.obj", "-q", "-v"], "--verbose"),
         (&["render", "scene.obj", "-o", "a.jpg"], ".png or .exr"),
         (&["render", "scene.obj", "-o", "png"], ".png or .exr"),
