@@ -11,9 +11,9 @@ use super::Failure;
 use super::comparison::{Json, Report};
 use super::console::{Console, print, printable};
 use super::difference::{self, Difference, Maps};
-use super::limit::Limit;
 use super::names::one_of;
 use super::targets::check_distinct;
+use super::threshold::Threshold;
 
 /// Say how far a picture is from its reference, as figures, a picture or a page
 #[derive(Args, Debug)]
@@ -40,11 +40,11 @@ pub struct CompareOptions {
     #[arg(long, default_value = Difference::Flip.name(), value_parser = one_of(Difference::ALL, Difference::name))]
     map: Difference,
     /// Fail where rmse, relmse, mae, flip, hdr_flip or non_finite is above a value; may be given again
-    #[arg(long, value_name = "METRIC=VALUE", value_parser = Limit::above)]
-    fail_above: Vec<Limit>,
+    #[arg(long, value_name = "METRIC=VALUE", value_parser = Threshold::above)]
+    fail_above: Vec<Threshold>,
     /// Fail where psnr or ssim is below a value; may be given again
-    #[arg(long, value_name = "METRIC=VALUE", value_parser = Limit::below)]
-    fail_below: Vec<Limit>,
+    #[arg(long, value_name = "METRIC=VALUE", value_parser = Threshold::below)]
+    fail_below: Vec<Threshold>,
     /// How many of the worst pixels are listed
     #[arg(long, value_name = "N", default_value_t = 3)]
     worst: usize,

@@ -13,7 +13,6 @@ mod failure;
 mod info;
 mod interrupt;
 mod layers;
-mod limit;
 mod limits;
 mod memory;
 mod metadata;
@@ -25,6 +24,7 @@ mod render;
 mod stats;
 mod table;
 mod targets;
+mod threshold;
 
 use clap::{Parser, Subcommand};
 

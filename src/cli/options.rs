@@ -90,7 +90,7 @@ pub struct PictureOptions {
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Sampling")]
 pub struct SamplingOptions {
-    /// Camera samples per pixel; with --time, --error or --adaptive the most on average, by default any number [default: the scene's, or 64]
+    /// Camera samples per pixel; under a limit the most on average [default: the scene's, or 64]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SAMPLES)))]
     pub samples: Option<u32>,
     /// Their layout [default: the scene's, or sobol]

@@ -1,16 +1,16 @@
-//! Limits on figures: `relmse=1e-4`.
+//! Thresholds for figures: `relmse=1e-4`.
 
 use halfshade::import::scene_file::suggestion;
 use halfshade::report::metrics::{Figures, Metric};
 
 /// A figure and the value that it must not pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limit {
+pub struct Threshold {
     metric: Metric,
     value: f64,
 }
 
-impl Limit {
+impl Threshold {
     /// An upper limit, of a metric that grows with the error.
     pub fn above(text: &str) -> Result<Self, String> {
         parsed(text, false)
@@ -35,7 +35,7 @@ impl Limit {
     }
 }
 
-fn parsed(text: &str, grows_with_likeness: bool) -> Result<Limit, String> {
+fn parsed(text: &str, grows_with_likeness: bool) -> Result<Threshold, String> {
     let (name, value) = text
         .split_once('=')
         .ok_or("not of the form METRIC=VALUE, like relmse=1e-4")?;
@@ -55,7 +55,7 @@ fn parsed(text: &str, grows_with_likeness: bool) -> Result<Limit, String> {
     }
     let value: Option<f64> = value.parse().ok().filter(|value: &f64| value.is_finite());
     let value = value.ok_or_else(|| format!("the limit of {name} is not a number"))?;
-    Ok(Limit { metric, value })
+    Ok(Threshold { metric, value })
 }
 
 #[cfg(test)]
@@ -65,11 +65,11 @@ mod tests {
 
     #[test]
     fn limits_are_metrics_with_numbers() {
-        let limit = Limit {
+        let limit = Threshold {
             metric: Metric::RelMse,
             value: 1e-4,
         };
-        assert_eq!(Limit::above("relmse = 1e-4"), Ok(limit));
+        assert_eq!(Threshold::above("relmse = 1e-4"), Ok(limit));
         for (text, expected) in [
             ("relmse", "METRIC=VALUE"),
             ("relmes=1", "did you mean \"relmse\"?"),
@@ -78,12 +78,12 @@ mod tests {
             ("rmse=", "not a number"),
             ("psnr=30", "--fail-below"),
         ] {
-            let error = Limit::above(text).unwrap_err();
+            let error = Threshold::above(text).unwrap_err();
             assert!(error.contains(expected), "{text}: {error}");
         }
-        assert!(Limit::below("ssim=0.9").is_ok());
+        assert!(Threshold::below("ssim=0.9").is_ok());
         assert!(
-            Limit::below("flip=0.9")
+            Threshold::below("flip=0.9")
                 .unwrap_err()
                 .contains("--fail-above")
         );
