@@ -13,6 +13,7 @@ mod failure;
 mod info;
 mod interrupt;
 mod layers;
+mod left_out;
 mod limit;
 mod limits;
 mod memory;

@@ -5,7 +5,7 @@ use halfshade::film::{ErrorEstimate, Film, Rect, StoppedBy};
 use halfshade::import::{Imported, import};
 use halfshade::math::UVec2;
 use halfshade::output::exr::Window;
-use halfshade::prepare::{Prepared, prepare};
+use halfshade::prepare::{Prepared, prepare_keeping};
 use halfshade::render::{Event, Job, Limits, Significant, render_within, replay};
 use halfshade::scene::{Placed, Scene, Settings};
 
@@ -14,6 +14,7 @@ use super::arguments::SampleId;
 use super::console::{Console, print};
 use super::interrupt::Interrupt;
 use super::layers::LayerValues;
+use super::left_out::LeftOutLine;
 use super::limits::limits;
 use super::memory;
 use super::metadata::metadata;
@@ -52,9 +53,19 @@ fn run_on_pool(
     let camera = camera(options, &imported.scene)?;
     seconds.import = clock.step();
 
-    let Prepared { scene, warnings } = prepare(&imported.scene, options.work.bvh);
+    let Prepared {
+        scene,
+        warnings,
+        left_out,
+    } = prepare_keeping(&imported.scene, options.work.bvh, options.work.keep.keep());
     seconds.prepare = clock.step();
     options.console.warn_all(&warnings);
+    let left_out = [imported.left_out.as_slice(), &left_out].concat();
+    for entry in &left_out {
+        options
+            .console
+            .detail(format_args!("left out: {}", LeftOutLine(entry)));
+    }
     let views = options.output.layers.iter().filter_map(|kind| kind.view());
     let job = Job {
         camera: scene.camera(camera),
@@ -86,6 +97,7 @@ fn run_on_pool(
         seed: settings.sampling.seed,
         seconds,
         error: film.error(),
+        left_out: &left_out,
     };
     finish(options, targets, &done)
 }

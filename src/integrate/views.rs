@@ -4,6 +4,7 @@ use crate::color::Rgb;
 use crate::math::Ray;
 use crate::prepare::{PreparedScene, Surface};
 use crate::sampling::Sampler;
+use crate::scene::{IntegratorKind, Needs};
 
 use super::{Integrator, RayKind, RayLog, RayRecord};
 
@@ -16,6 +17,17 @@ pub enum ViewKind {
     Depth,
     /// Diffuse reflectance or base colour.
     Albedo,
+}
+
+impl ViewKind {
+    /// What it reads.
+    pub fn needs(self) -> Needs {
+        Needs::of(match self {
+            Self::Normal => IntegratorKind::Normal,
+            Self::Depth => IntegratorKind::Depth,
+            Self::Albedo => IntegratorKind::Albedo,
+        })
+    }
 }
 
 /// The first surface along a ray that can be seen.

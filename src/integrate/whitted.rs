@@ -130,8 +130,8 @@ impl<'a> Whitted<'a> {
             return total;
         }
         let unmirrored = surface.bsdf.without_mirrored();
-        for (number, light) in self.scene.lights.iter().enumerate() {
-            let number = number as u32;
+        for &number in &self.scene.shining {
+            let light = &self.scene.lights[number as usize];
             let count = self.samples[number as usize];
             let bsdf = if light.is_visible() {
                 unmirrored
