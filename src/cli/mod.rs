@@ -16,6 +16,7 @@ mod layers;
 mod left_out;
 mod limit;
 mod limits;
+mod measure;
 mod memory;
 mod metadata;
 mod names;

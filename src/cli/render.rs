@@ -6,7 +6,7 @@ use halfshade::import::{Imported, import};
 use halfshade::math::UVec2;
 use halfshade::output::exr::Window;
 use halfshade::prepare::{Prepared, prepare_keeping};
-use halfshade::render::{Event, Job, Limits, Significant, render_within, replay};
+use halfshade::render::{self, Event, Job, Limits, Significant, render_within, replay};
 use halfshade::scene::{Placed, Scene, Settings};
 
 use super::Failure;
@@ -60,12 +60,6 @@ fn run_on_pool(
     } = prepare_keeping(&imported.scene, options.work.bvh, options.work.keep.keep());
     seconds.prepare = clock.step();
     options.console.warn_all(&warnings);
-    let left_out = [imported.left_out.as_slice(), &left_out].concat();
-    for entry in &left_out {
-        options
-            .console
-            .detail(format_args!("left out: {}", LeftOutLine(entry)));
-    }
     let views = options.output.layers.iter().filter_map(|kind| kind.view());
     let job = Job {
         camera: scene.camera(camera),
@@ -77,6 +71,14 @@ fn run_on_pool(
     let Some(targets) = targets else {
         return replay_one(options, &job);
     };
+
+    let mut left_out = [imported.left_out.as_slice(), &left_out].concat();
+    left_out.extend(render::left_out(&job));
+    for entry in &left_out {
+        options
+            .console
+            .detail(format_args!("left out: {}", LeftOutLine(entry)));
+    }
 
     memory::check(&job, &options.output.layers)?;
     let film = watched(&job, &limits, interrupt, options.console);

@@ -247,4 +247,8 @@ impl Integrator for Whitted<'_> {
         }
         total
     }
+
+    fn background(&self) -> Rgb {
+        self.scene.background.radiance
+    }
 }

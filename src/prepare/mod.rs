@@ -16,7 +16,7 @@ use crate::bvh::{Builder, Hit};
 use crate::camera::Camera;
 use crate::import::{WarningCode, Warnings};
 use crate::light::Light;
-use crate::math::{DAffine3, DVec3, Mat3, Ray, Vec3, gamma};
+use crate::math::{Aabb, DAffine3, DVec3, Mat3, Ray, Vec3, gamma};
 use crate::scene::{Background, Keep, LeftOut, Omission, Placed, Scene};
 
 use geometry::Geometry;
@@ -34,6 +34,8 @@ pub struct PreparedScene<'a> {
     pub lights: Vec<Light>,
     /// The numbers of those that shading points are lit by, in rising order.
     pub shining: Vec<u32>,
+    /// A box around everything that rays can meet; `None` where that is not asked for.
+    pub bounds: Option<Aabb>,
     /// What rays bring back that leave the scene.
     pub background: Background,
     geometry: Geometry,
@@ -78,7 +80,8 @@ pub fn prepare_within(scene: &Scene, builder: Builder, flatten_budget: u64) -> P
 
 fn prepare_all(scene: &Scene, builder: Builder, flatten_budget: u64, keep: Keep) -> Prepared<'_> {
     let asks_all = keep.contains(Omission::Opacity);
-    let placement = Placement::of(scene);
+    let bounds = scene.bounds();
+    let placement = Placement::around(bounds);
     let geometry = Geometry::build(scene, &placement, builder, flatten_budget, asks_all);
     let mut warnings = Warnings::default();
     warnings.add_many(
@@ -86,10 +89,13 @@ fn prepare_all(scene: &Scene, builder: Builder, flatten_budget: u64, keep: Keep)
         "triangles with a vertex that is not a finite number were left out",
         geometry.non_finite_triangles,
     );
+    let lights: Vec<Light> = scene.lights.iter().map(|l| light(l, &placement)).collect();
     let prepared = PreparedScene {
         scene,
         placement,
-        lights: scene.lights.iter().map(|l| light(l, &placement)).collect(),
+        bounds: (!keep.contains(Omission::Background))
+            .then(|| left_out::meetable(bounds, &placement, &lights)),
+        lights,
         shining: left_out::shining(scene, keep),
         background: scene.background,
         normal_matrices: scene

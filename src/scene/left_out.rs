@@ -61,16 +61,19 @@ pub enum Omission {
     Lights,
     /// Lookups of opacity where surfaces are opaque.
     Opacity,
+    /// Rays of pixels that see nothing but the background.
+    Background,
 }
 
 impl Omission {
     /// All of them.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Meshes,
         Self::Images,
         Self::Attributes,
         Self::Lights,
         Self::Opacity,
+        Self::Background,
     ];
 }
 

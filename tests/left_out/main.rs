@@ -13,7 +13,7 @@ use halfshade::film::Rect;
 use halfshade::import::{SceneOptions, import};
 use halfshade::integrate::ViewKind;
 use halfshade::prepare::prepare_keeping;
-use halfshade::render::{Job, render};
+use halfshade::render::{self, Job, render};
 use halfshade::scene::{Keep, LeftOut, Needs};
 
 /// What is rendered of a scene.
@@ -63,6 +63,7 @@ fn picture(path: &Path, ask: &Ask, keep: Keep) -> (Bits, Vec<LeftOut>) {
             .map(|layer| layer.iter().map(bits).collect())
             .collect(),
     };
-    let left_out = [imported.left_out, prepared.left_out].concat();
+    let mut left_out = [imported.left_out, prepared.left_out].concat();
+    left_out.extend(render::left_out(&job));
     (bits, left_out)
 }
