@@ -79,35 +79,56 @@ impl Camera {
         }
     }
 
-    /// The ray through `film`, in pixels from the upper left corner of a film of `size`.
+    /// What makes its rays through a film of `size` pixels.
+    pub fn rays(&self, size: UVec2) -> CameraRays<'_> {
+        CameraRays {
+            camera: self,
+            size: size.as_vec2(),
+            half_height: match self.projection {
+                Projection::Perspective {
+                    vertical_fov_radians,
+                } => (0.5 * vertical_fov_radians).tan(),
+                Projection::Orthographic { half_height } => half_height,
+            },
+        }
+    }
+}
+
+/// The rays of a camera through a film.
+#[derive(Clone, Copy, Debug)]
+pub struct CameraRays<'a> {
+    camera: &'a Camera,
+    size: Vec2,
+    /// Of what is seen; with perspective at distance 1.
+    half_height: f32,
+}
+
+impl CameraRays<'_> {
+    /// The ray through `film`, in pixels from the upper left corner of the film.
     ///
     /// `lens` is a point of the unit disk; a pinhole ignores it. The direction has length 1.
-    pub fn ray(&self, film: Vec2, size: UVec2, lens: Vec2) -> Ray {
-        let size = size.as_vec2();
+    pub fn at(&self, film: Vec2, lens: Vec2) -> Ray {
+        let Self { camera, size, .. } = self;
         // From -1 to 1 up the picture, and in the same measure across it.
         let x = (2.0 * film.x - size.x) / size.y;
         let y = 1.0 - 2.0 * film.y / size.y;
-        let (origin, direction) = match self.projection {
-            Projection::Perspective {
-                vertical_fov_radians,
-            } => {
-                let half_height = (0.5 * vertical_fov_radians).tan();
-                let toward = Vec3::new(x * half_height, y * half_height, -1.0);
-                (Vec3::ZERO, toward)
-            }
-            Projection::Orthographic { half_height } => {
-                (Vec3::new(x * half_height, y * half_height, 0.0), -Vec3::Z)
-            }
+        let across = Vec3::new(x * self.half_height, y * self.half_height, 0.0);
+        let (origin, direction) = match camera.projection {
+            Projection::Perspective { .. } => (Vec3::ZERO, across - Vec3::Z),
+            Projection::Orthographic { .. } => (across, -Vec3::Z),
         };
-        let (origin, direction) = if self.lens_radius > 0.0 {
-            let in_focus = origin + direction * self.focus_distance;
-            let on_lens = origin + (self.lens_radius * lens).extend(0.0);
+        let (origin, direction) = if camera.lens_radius > 0.0 {
+            let in_focus = origin + direction * camera.focus_distance;
+            let on_lens = origin + (camera.lens_radius * lens).extend(0.0);
             (on_lens, in_focus - on_lens)
         } else {
             (origin, direction)
         };
-        let world = |v: Vec3| *self.right * v.x + *self.up * v.y + *self.back * v.z;
-        Ray::new(self.position + world(origin), world(direction.normalize()))
+        let world = |v: Vec3| *camera.right * v.x + *camera.up * v.y + *camera.back * v.z;
+        Ray::new(
+            camera.position + world(origin),
+            world(direction.normalize()),
+        )
     }
 }
 
@@ -128,18 +149,18 @@ mod tests {
 
     #[test]
     fn the_middle_of_the_film_looks_at_the_target() {
-        let ray = camera().ray(Vec2::new(40.0, 30.0), UVec2::new(80, 60), Vec2::ZERO);
+        let ray = camera()
+            .rays(UVec2::new(80, 60))
+            .at(Vec2::new(40.0, 30.0), Vec2::ZERO);
         assert!((ray.direction - Vec3::new(0.0, 0.0, -1.0)).length() < 1e-6);
     }
 
     #[test]
     fn the_field_of_view_spans_the_height() {
         let camera = camera();
-        let size = UVec2::new(80, 60);
-        let top = camera.ray(Vec2::new(40.0, 0.0), size, Vec2::ZERO).direction;
-        let bottom = camera
-            .ray(Vec2::new(40.0, 60.0), size, Vec2::ZERO)
-            .direction;
+        let rays = camera.rays(UVec2::new(80, 60));
+        let top = rays.at(Vec2::new(40.0, 0.0), Vec2::ZERO).direction;
+        let bottom = rays.at(Vec2::new(40.0, 60.0), Vec2::ZERO).direction;
         assert!((top.angle_between(bottom) - 1.0).abs() < 1e-5);
         assert!(top.y > 0.0);
     }
@@ -152,9 +173,9 @@ mod tests {
             ..camera()
         };
         let film = Vec2::new(10.0, 20.0);
-        let size = UVec2::new(80, 60);
+        let rays = camera.rays(UVec2::new(80, 60));
         let hits = [Vec2::ZERO, Vec2::X, Vec2::new(-0.6, 0.6)].map(|lens| {
-            let ray = camera.ray(film, size, lens);
+            let ray = rays.at(film, lens);
             ray.at((2.0 - ray.origin.z) / ray.direction.z)
         });
         assert!((hits[0] - hits[1]).length() < 1e-5 && (hits[0] - hits[2]).length() < 1e-5);

@@ -14,7 +14,7 @@ use halfshade::light::{DiskLight, Light};
 use halfshade::material::{Material, Phong, Surface};
 use halfshade::math::{UVec2, UnitVec3, Vec3};
 use halfshade::prepare::prepare;
-use halfshade::render::{Job, render, replay};
+use halfshade::render::{Event, Job, render, replay};
 use halfshade::sampling::{Pattern, SamplingConfig};
 use halfshade::scene::{Background, Placed, Scene, Settings};
 
@@ -232,9 +232,11 @@ fn a_cancelled_render_keeps_what_there_is() {
     };
     let cancel = AtomicBool::new(false);
     let area = job.crop.area();
-    let film = render(&job, &cancel, &|progress| {
-        // After the first wave every pixel has a sample.
-        if progress.done > area {
+    let film = render(&job, &cancel, &|event| {
+        // After the first pass every pixel has a sample.
+        if let Event::Progress(progress) = event
+            && progress.done > area
+        {
             cancel.store(true, std::sync::atomic::Ordering::Relaxed);
         }
     });

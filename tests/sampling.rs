@@ -33,6 +33,15 @@ fn samplers(config: SamplingConfig, pixel: UVec2) -> impl Iterator<Item = Sample
     (0..config.samples_per_pixel()).map(move |i| Sampler::new(&config, pixel, i))
 }
 
+/// The samplers of each of a pixel's sets, `samples` in each.
+fn sets(config: SamplingConfig, pixel: UVec2) -> Vec<Vec<Sampler>> {
+    let sets = config.pattern.sets() as usize;
+    let all: Vec<_> = samplers(config, pixel).collect();
+    (0..sets)
+        .map(|set| all.iter().skip(set).step_by(sets).copied().collect())
+        .collect()
+}
+
 /// What each use of a sample gives when it is the only one of its camera sample.
 fn uses(sampler: &Sampler) -> [Vec2; 4] {
     [
@@ -118,17 +127,18 @@ fn grid_and_jittered_samples_take_each_cell_once() {
         for (samples, columns, rows) in
             [(1, 1, 1), (3, 3, 1), (10, 4, 3), (81, 9, 9), (1000, 33, 31)]
         {
-            let config = config(pattern, samples, 3);
+            let config = config(pattern, pattern.sets() * samples, 3);
             for pixel in [UVec2::ZERO, UVec2::new(17, 4)] {
-                let points: Vec<_> = samplers(config, pixel).map(|s| uses(&s)).collect();
-                for k in 0..points[0].len() {
-                    let points: Vec<_> = points.iter().map(|p| p[k]).collect();
-                    assert_one_per_cell(&points, columns, rows, &format!("{pattern:?}, use {k}"));
+                for set in sets(config, pixel) {
+                    for k in 0..4 {
+                        let points: Vec<_> = set.iter().map(|s| uses(s)[k]).collect();
+                        let what = format!("{pattern:?}, use {k}");
+                        assert_one_per_cell(&points, columns, rows, &what);
+                    }
+                    let count = pattern.cells(samples);
+                    let shadow: Vec<_> = (0..count).map(|j| set[0].light(1, 0, j, count)).collect();
+                    assert_one_per_cell(&shadow, columns, rows, &format!("{pattern:?}, light"));
                 }
-                let sampler = Sampler::new(&config, pixel, 0);
-                let count = pattern.cells(samples);
-                let shadow: Vec<_> = (0..count).map(|j| sampler.light(1, 0, j, count)).collect();
-                assert_one_per_cell(&shadow, columns, rows, &format!("{pattern:?}, light"));
             }
         }
     }
@@ -150,8 +160,8 @@ fn sobol_samples_take_each_elementary_interval_once() {
     for log_samples in 0..11 {
         let samples = 1 << log_samples;
         for seed in 0..3 {
-            let all: Vec<_> =
-                samplers(config(Pattern::Sobol, samples, seed), UVec2::new(3, 9)).collect();
+            let config = config(Pattern::Sobol, 2 * samples, seed);
+            let all = &sets(config, UVec2::new(3, 9))[seed as usize % 2];
             let camera: Vec<_> = all.iter().map(Sampler::camera).collect();
             let bounce: Vec<_> = all.iter().map(|s| s.light(2, 0, 0, 1)).collect();
             // Four shadow rays per camera sample: all of them together.
@@ -168,6 +178,35 @@ fn sobol_samples_take_each_elementary_interval_once() {
             let first: Vec<_> = all.iter().map(|s| s.light(1, 0, 0, 1)).collect();
             assert_one_per_cell(&first, samples, 1, "first light, across");
             assert_one_per_cell(&first, 1, samples, "first light, up");
+        }
+    }
+}
+
+/// Over pixels, the errors of the means of two sets have nothing to do with each other: what the
+/// estimate of a picture's error rests on.
+#[test]
+fn sets_of_a_pixel_are_independent() {
+    for pattern in [Pattern::Jittered, Pattern::Random, Pattern::Sobol] {
+        for samples in [2, 8, 32] {
+            let config = config(pattern, samples, 4);
+            for k in 0..4 {
+                let (mut products, mut squares) = (Moments::default(), Moments::default());
+                for pixel in 0..20_000 {
+                    let error = |set: &Vec<Sampler>| {
+                        let values = set.iter().map(|s| integrand(uses(s)[k]));
+                        values.sum::<f64>() / set.len() as f64 - integral()
+                    };
+                    let sets = sets(config, UVec2::new(pixel, 2));
+                    products.add(error(&sets[0]) * error(&sets[1]));
+                    squares.add(error(&sets[0]).powi(2));
+                }
+                let off = products.mean() / products.standard_error();
+                println!(
+                    "{pattern:?} {samples}: {:.4}",
+                    products.mean() / squares.mean()
+                );
+                assert!(off.abs() < 4.5, "{pattern:?}, {samples}, use {k}: {off}");
+            }
         }
     }
 }
@@ -427,7 +466,10 @@ fn stratified_points_converge_faster_at_a_penumbra() {
         let errors = PATTERNS.map(|pattern| penumbra_error(pattern, samples));
         println!("{samples:5} samples: RMSE of {PATTERNS:?} {errors:.5?}");
         let [_, jittered, random, sobol] = errors;
-        assert!(sobol < 0.7 * random && jittered < 0.7 * random, "{samples}");
+        assert!(jittered < 0.7 * random, "{samples}");
+        // Two sets of 8 points are few for a net in four dimensions.
+        let bound = if samples > 16 { 0.7 } else { 0.9 };
+        assert!(sobol < bound * random, "{samples}");
     }
     let [_, jittered, random, sobol] = PATTERNS.map(slope);
     println!("slopes: jittered {jittered:.3}, random {random:.3}, sobol {sobol:.3}");

@@ -2,24 +2,14 @@
 //! the README; the penumbra scene follows its closed form.
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
-#[path = "../models/generate/mod.rs"]
-#[allow(dead_code)] // The small models are for tests/models.rs.
-mod generate;
+#[path = "common/project.rs"]
+mod project;
 
 use std::f64::consts::PI;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::sync::Once;
-use std::sync::atomic::AtomicBool;
 
-use halfshade::bvh::Builder;
-use halfshade::film::{Film, Rect};
-use halfshade::import::{Imported, SceneOptions, import};
-use halfshade::prepare::prepare;
-use halfshade::render::{Job, render};
-
-/// Changes of a scene file: paths and values.
-type Overrides<'a> = &'a [(&'a str, &'a str)];
+use halfshade::film::Rect;
+use project::{Overrides, film, load, root, scenes};
 
 #[test]
 fn every_scene_imports_without_a_warning() {
@@ -90,57 +80,4 @@ fn the_readme_tells_of_every_scene() {
         let text = fs::read_to_string(&path).unwrap();
         assert!(text.starts_with("# "), "{name} does not say what it shows");
     }
-}
-
-fn film(imported: &Imported, crop: Option<Rect>) -> Film {
-    let prepared = prepare(&imported.scene, Builder::default());
-    assert!(prepared.warnings.is_empty());
-    let scene = &prepared.scene;
-    let settings = &imported.settings;
-    let job = Job {
-        scene,
-        camera: scene.camera(&imported.scene.cameras[0]),
-        settings,
-        crop: crop.unwrap_or(Rect::full(settings.size)),
-        layers: Vec::new(),
-    };
-    render(&job, &AtomicBool::new(false), &|_| {})
-}
-
-fn load(path: &Path, overrides: Overrides) -> Imported {
-    make_large_models();
-    let overrides = overrides.iter();
-    let options = SceneOptions {
-        overrides: overrides.map(|(k, v)| ((*k).into(), (*v).into())).collect(),
-        ..SceneOptions::default()
-    };
-    import(path, &options).unwrap_or_else(|error| panic!("{error}"))
-}
-
-/// Models that are too large to keep are made before a scene asks for them.
-fn make_large_models() {
-    static ONCE: Once = Once::new();
-    ONCE.call_once(|| {
-        let folder = root().join("target/models");
-        let files = generate::large_files();
-        let is_made = |file: &generate::File| {
-            fs::read(folder.join(file.name)).is_ok_and(|bytes| bytes == file.bytes)
-        };
-        if !files.iter().all(is_made) {
-            generate::write(&folder, &files).unwrap();
-        }
-    });
-}
-
-fn scenes() -> Vec<PathBuf> {
-    let entries = fs::read_dir(root().join("scenes")).unwrap();
-    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
-    paths.retain(|path| path.extension().is_some_and(|e| e == "toml"));
-    paths.sort();
-    assert!(paths.len() >= 7, "{paths:?}");
-    paths
-}
-
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
 }

@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use halfshade::film::Pixel;
 use halfshade::math::UVec2;
 use halfshade::render::Limits;
 use halfshade::sampling::Pattern;
@@ -9,12 +10,12 @@ use halfshade::sampling::Pattern;
 use crate::subject::{Subject, true_error, with_scene};
 
 pub fn run(scenes: &[String]) {
-    println!("scene     asked        got est (true)    seconds   forecast (of it)  samples");
+    println!(
+        "scene     asked        got est (true)    seconds   forecast (of it; samples)  samples"
+    );
     for name in ["penumbra", "house", "cornell", "glass", "terrain"] {
         if scenes.is_empty() || scenes.iter().any(|s| s == name) {
-            with_scene(name, UVec2::new(320, 180), |subject| {
-                of_scene(name, subject)
-            });
+            with_scene(name, UVec2::new(160, 90), |subject| of_scene(name, subject));
         }
     }
 }
@@ -38,7 +39,9 @@ fn of_scene(name: &str, subject: &Subject) {
                 } else {
                     (f.seconds, got.seconds)
                 };
-                format!("{forecast:.4} ({:.2})", forecast / outcome)
+                let samples: u64 = got.film.pixels.iter().map(Pixel::count).sum();
+                let share = f.samples as f64 / samples as f64;
+                format!("{forecast:.4} ({:.2}; {share:.2})", forecast / outcome)
             });
             println!(
                 "{name:9} {asked:12} {:.5} ({:.5}) {:8.2}  {forecast:16}  {:.1}{}",
@@ -59,7 +62,7 @@ fn of_scene(name: &str, subject: &Subject) {
                 false,
             );
         }
-        for seconds in [1.0, 3.0, 9.0] {
+        for seconds in [1.0, 3.0, 6.0] {
             let deadline = Some(Instant::now() + Duration::from_secs_f64(seconds));
             print(format!("{seconds} s"), Limits { deadline, ..limits }, true);
         }

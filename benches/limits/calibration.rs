@@ -9,7 +9,7 @@ const SEEDS: u64 = 200;
 
 pub fn run(scenes: &[String]) {
     println!("scene      pattern   samples  covered  est/true  half-width");
-    for name in ["penumbra", "cornell", "glass"] {
+    for name in ["penumbra", "house", "glass", "terrain", "cornell"] {
         if scenes.is_empty() || scenes.iter().any(|s| s == name) {
             with_scene(name, UVec2::new(64, 36), |subject| of_scene(name, subject));
         }
@@ -17,9 +17,9 @@ pub fn run(scenes: &[String]) {
 }
 
 fn of_scene(name: &str, subject: &Subject) {
-    let reference = subject.reference(1 << 14);
+    let reference = subject.reference(1 << 13);
     for pattern in [Pattern::Random, Pattern::Jittered, Pattern::Sobol] {
-        for samples in [4, 16, 64] {
+        for samples in [8, 32, 128] {
             let (mut covered, mut ratios, mut widths) = (0, 0.0, 0.0);
             for seed in 0..SEEDS {
                 let film = subject

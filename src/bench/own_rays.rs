@@ -38,11 +38,12 @@ pub fn own_rays(triangles: &Triangles, side: u32) -> Option<[RaySet; 4]> {
     let camera = camera(&bounds)?;
     let light = DiskLight::over(&bounds)?;
     let pixel = |i: u32| UVec2::new(i % side, i / side);
+    let rays = camera.rays(UVec2::splat(side));
     let primary: Vec<Ray> = (0..side * side)
         .into_par_iter()
         .map(|i| {
             let film = film_position(pixel(i), Vec2::splat(0.5));
-            camera.ray(film, UVec2::splat(side), Vec2::ZERO)
+            rays.at(film, Vec2::ZERO)
         })
         .collect();
     let (shadow, diffuse) = primary

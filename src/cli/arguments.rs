@@ -85,6 +85,21 @@ pub fn positive(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "not a number above 0".to_owned())
 }
 
+/// A number of bytes, or of KiB, MiB or GiB: `1000`, `500M`, `4G`.
+pub fn bytes(text: &str) -> Result<u64, String> {
+    let text = text.trim();
+    let (number, unit) = match text.char_indices().next_back() {
+        Some((end, 'K' | 'k')) => (&text[..end], 1u64 << 10),
+        Some((end, 'M' | 'm')) => (&text[..end], 1 << 20),
+        Some((end, 'G' | 'g')) => (&text[..end], 1 << 30),
+        _ => (text, 1),
+    };
+    let number: Option<u64> = number.parse().ok();
+    number
+        .and_then(|number| number.checked_mul(unit))
+        .ok_or_else(|| "not a number of bytes like 500M or 4G".to_owned())
+}
+
 /// Stops of exposure.
 pub fn stops(text: &str) -> Result<f32, String> {
     let stops: Option<f32> = text.trim().parse().ok();
@@ -141,6 +156,16 @@ mod tests {
         assert_eq!(positive("1e-3"), Ok(1e-3));
         for wrong in ["0", "-1", "nan", "inf", "x"] {
             assert!(positive(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn bytes_have_units() {
+        assert_eq!(bytes("1000"), Ok(1000));
+        assert_eq!(bytes("500M"), Ok(500 << 20));
+        assert_eq!(bytes(" 4g"), Ok(4 << 30));
+        for wrong in ["", "G", "-1", "4.5G", "4GB", "99999999999G"] {
+            assert!(bytes(wrong).is_err(), "{wrong}");
         }
     }
 

@@ -1,11 +1,14 @@
-//! Whether a picture fits into memory: running out of it later would lose the work.
+//! Whether trees and a picture fit into memory: running out of it later would lose the work.
 
 use std::hint::black_box;
 
+use halfshade::bvh::Builder;
+use halfshade::prepare::traced_triangles;
 use halfshade::render::Job;
+use halfshade::scene::Scene;
 
 use super::Failure;
-use super::console::Bytes;
+use super::console::{Bytes, Console};
 use super::layers::{LayerKind, LayerValues};
 
 /// Fails where the system does not give what `job` and its outputs will take.
@@ -22,6 +25,30 @@ pub fn check(job: &Job, layers: &[LayerKind]) -> Result<(), Failure> {
         job.crop.height,
         Bytes(bytes)
     )))
+}
+
+/// Says what building the trees over `scene` will take, and fails where that is above `limit`.
+pub fn check_build(
+    scene: &Scene,
+    builder: Builder,
+    limit: Option<u64>,
+    console: Console,
+) -> Result<(), Failure> {
+    let triangles = traced_triangles(scene);
+    let peak = builder.peak_bytes(triangles);
+    console.detail(format_args!(
+        "building the {builder} tree over {triangles} triangles takes up to {}",
+        Bytes(peak)
+    ));
+    match limit {
+        Some(limit) if peak > limit => Err(Failure::job(format_args!(
+            "building the {builder} tree over {triangles} triangles takes up to {}, which is more \
+             than --max-memory allows ({})",
+            Bytes(peak),
+            Bytes(limit)
+        ))),
+        _ => Ok(()),
+    }
 }
 
 /// Whether the system would give this much memory in one piece; it is given back untouched.

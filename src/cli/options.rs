@@ -168,6 +168,9 @@ pub struct WorkOptions {
     pub bvh: Builder,
     #[command(flatten)]
     pub keep: KeepOptions,
+    /// Refuse to build a tree that would take more memory than this, like 500M or 4G [default: no limit]
+    #[arg(long, value_name = "BYTES", value_parser = arguments::bytes)]
+    pub max_memory: Option<u64>,
     /// Trace one sample of one pixel (column, row, index), print its rays in world coordinates and write no files
     #[arg(long, value_name = "X,Y,I", value_parser = arguments::sample_id)]
     pub replay: Option<SampleId>,

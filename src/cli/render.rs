@@ -1,5 +1,7 @@
 //! `halfshade render`: scene to picture.
 
+use std::time::{Duration, Instant};
+
 use halfshade::camera::Camera;
 use halfshade::film::{ErrorEstimate, Film, Rect, StoppedBy};
 use halfshade::import::{Imported, import};
@@ -48,11 +50,14 @@ fn run_on_pool(
 
     let mut imported = load(options)?;
     let crop = crop(options, &imported.settings)?;
-    let limits = limits(options, &mut imported.settings, crop, clock.begin())?;
+    let deadline = deadline(options, targets, crop, &clock);
+    let limits = limits(options, &mut imported.settings, deadline)?;
     let settings = &imported.settings;
     let camera = camera(options, &imported.scene)?;
     seconds.import = clock.step();
 
+    let limit = options.work.max_memory;
+    memory::check_build(&imported.scene, options.work.bvh, limit, options.console)?;
     let Prepared {
         scene,
         warnings,
@@ -102,6 +107,19 @@ fn run_on_pool(
         left_out: &left_out,
     };
     finish(options, targets, &done)
+}
+
+/// When the samples have to be there, so that the files are written in time.
+fn deadline(
+    options: &RenderOptions,
+    targets: Option<&Targets>,
+    crop: Rect,
+    clock: &StepClock,
+) -> Option<Instant> {
+    let (seconds, targets) = (options.limits.time?, targets?);
+    let writing = targets.writing_seconds(crop.area(), &options.output.layers);
+    let rendering = Duration::try_from_secs_f64((seconds - writing).max(0.0)).ok()?;
+    clock.begin().checked_add(rendering)
 }
 
 /// The scene, with settings that follow the options.
@@ -270,5 +288,10 @@ fn samples_text(film: &Film) -> String {
 /// Like `; estimated relative RMSE 0.0123 (0.0119 to 0.0127)`.
 fn error_text(error: &ErrorEstimate) -> String {
     let [estimate, low, high] = [error.estimate, error.low, error.high].map(Significant);
-    format!("; estimated relative RMSE {estimate} ({low} to {high})")
+    let doubt = if error.worst_share > 0.5 {
+        ", most of it from 0.1 % of the pixels"
+    } else {
+        ""
+    };
+    format!("; estimated relative RMSE {estimate} ({low} to {high}{doubt})")
 }

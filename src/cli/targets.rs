@@ -1,14 +1,23 @@
 //! The files that `render` writes: checked before the work, written after it.
 
+use std::io;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
-use halfshade::output::exr::{self, Window};
+use halfshade::color::Rgb;
+use halfshade::math::UVec2;
+use halfshade::output::exr::{self, Layer, Values, Window};
 use halfshade::output::png::{self, PngBits, PngOptions};
 use halfshade::output::{ImageFormat, OutputError, check_writable};
 
 use super::Failure;
-use super::layers::LayerValues;
+use super::layers::{LayerKind, LayerValues};
 use super::options::{OutputOptions, RenderOptions};
+
+/// Size of the picture that tells how long writing takes.
+const REHEARSAL: UVec2 = UVec2::new(128, 64);
+/// What making a file takes beside its pixels.
+const SECONDS_PER_FILE: f64 = 0.01;
 
 /// The files that a render writes.
 pub struct Targets {
@@ -45,6 +54,33 @@ impl Targets {
         self.images.iter().map(|(path, _)| path.as_path())
     }
 
+    /// About how many seconds it will take to write a picture of `pixels` pixels: measured on a small
+    /// one of noise, which no format can shorten.
+    pub fn writing_seconds(&self, pixels: u64, layers: &[LayerKind]) -> f64 {
+        let picture = rehearsal();
+        let start = Instant::now();
+        for (_, format) in &self.images {
+            // What fails here fails again, and is told of, when the files are written.
+            let _ = match format {
+                ImageFormat::Png => png::encode(io::sink(), REHEARSAL, &picture, self.png),
+                ImageFormat::Exr => {
+                    let values = || Values::Colors(&picture);
+                    let names = std::iter::once("").chain(layers.iter().map(|kind| kind.name()));
+                    let layers: Vec<_> = names
+                        .map(|name| Layer {
+                            name,
+                            values: values(),
+                        })
+                        .collect();
+                    let file = io::Cursor::new(Vec::new());
+                    exr::encode(file, Window::whole(REHEARSAL), &layers, &[])
+                }
+            };
+        }
+        let share = pixels as f64 / f64::from(REHEARSAL.x * REHEARSAL.y);
+        start.elapsed().as_secs_f64() * share + SECONDS_PER_FILE * self.images.len() as f64
+    }
+
     /// Writes all of them, even where one fails; the first error is returned.
     pub fn write(
         &self,
@@ -59,6 +95,18 @@ impl Targets {
         let results: Vec<_> = self.images.iter().map(write).collect();
         results.into_iter().collect()
     }
+}
+
+/// Noise in the range of a picture.
+fn rehearsal() -> Vec<Rgb> {
+    let mut state = 1_u32;
+    let mut next = || {
+        // Numerical Recipes' linear congruential generator.
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) as f32 / (1 << 24) as f32
+    };
+    let pixels = (0..REHEARSAL.x * REHEARSAL.y).map(|_| Rgb::new(next(), next(), next()));
+    pixels.collect()
 }
 
 fn usage(message: String) -> Failure {

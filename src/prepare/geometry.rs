@@ -222,6 +222,18 @@ fn instanced_meshes(scene: &Scene, flatten_budget: u64) -> Vec<MeshId> {
     instanced
 }
 
+/// How many triangles the trees over `scene` will hold, with that budget for flattening.
+pub(super) fn traced_triangles(scene: &Scene, flatten_budget: u64) -> u64 {
+    let instanced = instanced_meshes(scene, flatten_budget);
+    let triangles = |mesh: MeshId| scene.mesh(mesh).indices().len() as u64;
+    let flattened = scene
+        .instances
+        .iter()
+        .filter(|instance| instanced.binary_search(&instance.mesh).is_err())
+        .map(|instance| triangles(instance.mesh));
+    flattened.sum::<u64>() + instanced.iter().map(|&mesh| triangles(mesh)).sum::<u64>()
+}
+
 /// One tree of all `instances`, in prepared coordinates.
 fn flatten(
     scene: &Scene,

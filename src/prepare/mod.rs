@@ -62,6 +62,11 @@ pub struct Prepared<'a> {
 /// meshes are kept as instances.
 pub const FLATTEN_BUDGET: u64 = 1 << 21;
 
+/// How many triangles [`prepare`] will build trees over: what their memory is reckoned by.
+pub fn traced_triangles(scene: &Scene) -> u64 {
+    geometry::traced_triangles(scene, FLATTEN_BUDGET)
+}
+
 /// Makes `scene` ready to be rendered.
 pub fn prepare(scene: &Scene, builder: Builder) -> Prepared<'_> {
     prepare_within(scene, builder, FLATTEN_BUDGET)

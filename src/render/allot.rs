@@ -1,14 +1,18 @@
 //! Where the next samples go: to the pixels whose error they lower most.
 //!
 //! A half of a pixel is allotted by what the *other* half has seen there and what both have seen in
-//! the eight pixels around, never by its own samples, so that no half stops where it has been lucky (Kirk and Arvo
-//! 1991, "Unbiased Sampling Techniques for Image Synthesis", tell of the bias of doing so). The halves weigh the same
-//! whatever their counts ([`crate::film::Pixel`]). What is left is a bias of second order: the other half's count, and so how well it knows,
-//! once depended on this half. `tests/adaptive.rs` measures that it cannot be seen.
+//! the eight pixels around, never by its own samples, so that no half stops where it has been lucky
+//! (Kirk and Arvo 1991, "Unbiased Sampling Techniques for Image Synthesis", on the bias of doing so).
+//! The halves weigh the same whatever their counts ([`crate::film::Pixel`]). What is left is a bias of
+//! second order: how well the other half knows depends on its count, on which this half once
+//! had a say. `tests/limits/adaptive.rs` measures it: with 16 samples a pixel its square is less than 1 % of
+//! the squared error.
 //!
 //! Variances of samples say where the error is, but overstate that of a stratified pattern by far. How far, each
 //! tile learns from the difference of its pixels' halves. With errors falling like n^-p and samples that cost c, the sum of all
 //! errors is least where n grows like (variance / c)^(1 / (1 + p)) (Lagrange).
+
+use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
@@ -25,20 +29,37 @@ const LEAST_SHARE: f64 = 0.125;
 /// Most samples of one half of a pixel.
 const MOST: u32 = 1 << 28;
 
+/// Scores are kept as whole numbers of this part of an octave, so that halves alike can be counted together.
+const STEPS_PER_OCTAVE: f64 = 16.0;
+/// Weights below this are as good as 0.
+const LEAST_WEIGHT: f64 = 1e-30;
+
 /// One half of a pixel.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Share {
+    /// The best number of samples is in proportion to this power of two, in steps of
+    /// [`STEPS_PER_OCTAVE`].
+    score: i16,
     taken: u32,
-    /// Its part of the film's relMSE is this times n^-p.
-    weight: f32,
-    /// The best number of samples is in proportion to this.
-    score: f32,
 }
 
-struct TileShares {
-    /// Rays of a sample.
-    cost: f64,
-    shares: Vec<Share>,
+impl Share {
+    fn score(self) -> f64 {
+        (f64::from(self.score) / STEPS_PER_OCTAVE).exp2()
+    }
 }
+
+/// All halves that are alike.
+#[derive(Clone, Copy, Default)]
+struct Class {
+    count: u64,
+    /// Sum of their rays for a sample.
+    cost: f64,
+    /// Sum of their weights: a half's part of the film's relMSE is its weight times n^-p.
+    weight: f64,
+}
+
+type Classes = BTreeMap<Share, Class>;
 
 /// How many samples each half of each pixel is to get.
 pub(super) struct Allotment {
@@ -46,7 +67,9 @@ pub(super) struct Allotment {
     /// Samples come in multiples of this: a round of cells.
     unit: u32,
     pixels: u64,
-    tiles: Vec<TileShares>,
+    /// Of each tile, two for a pixel.
+    shares: Vec<Vec<Share>>,
+    classes: Vec<(Share, Class)>,
 }
 
 /// What comes of a number of samples.
@@ -83,15 +106,23 @@ impl Allotment {
             let sum = |f: fn(&Measured) -> f64| measured.iter().map(f).sum::<f64>();
             sum(|m| m.error) / sum(|m| m.model).max(f64::MIN_POSITIVE)
         };
-        let tiles = measured
+        let (shares, by_tile): (Vec<_>, Vec<Classes>) = measured
             .into_par_iter()
             .map(|measured| measured.shares(film_factor, exponent))
-            .collect();
+            .unzip();
+        let mut classes = Classes::new();
+        for (share, class) in by_tile.iter().flatten() {
+            let sum = classes.entry(*share).or_default();
+            sum.count += class.count;
+            sum.cost += class.cost;
+            sum.weight += class.weight;
+        }
         Self {
             pattern,
             unit,
             pixels: film.area(),
-            tiles,
+            shares,
+            classes: classes.into_iter().collect(),
         }
     }
 
@@ -101,15 +132,16 @@ impl Allotment {
     }
 
     /// What comes of numbers of samples of `scale` times the scores.
-    pub fn at(&self, scale: f32) -> Outcome {
+    pub fn at(&self, scale: f64) -> Outcome {
         let by_score = self.outcome(scale, 0);
         self.outcome(scale, self.least(by_score.samples))
     }
 
     /// The largest scale whose outcome is `within`, where all smaller ones are.
-    pub fn scale(&self, within: impl Fn(&Outcome) -> bool) -> f32 {
-        let (mut low, mut high) = (-60.0_f32, 60.0_f32);
-        for _ in 0..16 {
+    pub fn scale(&self, within: impl Fn(&Outcome) -> bool) -> f64 {
+        // Scores are the 0.4th or 0.5th power of weights from 1e-30 to not much more than 1.
+        let (mut low, mut high) = (-50.0_f64, 90.0_f64);
+        for _ in 0..18 {
             let middle = 0.5 * (low + high);
             if within(&self.at(middle.exp2())) {
                 low = middle;
@@ -121,14 +153,14 @@ impl Allotment {
     }
 
     /// Sets the goals of all tiles.
-    pub fn aim(&self, tiles: &mut [Tile], scale: f32) {
+    pub fn aim(&self, tiles: &mut [Tile], scale: f64) {
         let least = self.least(self.outcome(scale, 0).samples);
         tiles
             .par_iter_mut()
-            .zip(&self.tiles)
-            .for_each(|(tile, of)| {
-                for (goal, shares) in tile.goal.iter_mut().zip(of.shares.chunks_exact(2)) {
-                    *goal = [0, 1].map(|half| self.count(&shares[half], scale, least));
+            .zip(&self.shares)
+            .for_each(|(tile, shares)| {
+                for (goal, shares) in tile.goal.iter_mut().zip(shares.chunks_exact(2)) {
+                    *goal = [0, 1].map(|half| self.count(shares[half], scale, least));
                 }
             });
     }
@@ -136,52 +168,41 @@ impl Allotment {
     /// What every half of a pixel gets at least where there are `samples` in all.
     fn least(&self, samples: u64) -> u32 {
         let mean = samples as f64 / (2 * self.pixels) as f64;
-        self.rounded((LEAST_SHARE * mean) as f32)
+        self.rounded(LEAST_SHARE * mean)
     }
 
-    fn count(&self, share: &Share, scale: f32, least: u32) -> u32 {
-        self.rounded(scale * share.score)
+    fn count(&self, share: Share, scale: f64, least: u32) -> u32 {
+        self.rounded(scale * share.score())
             .max(least)
             .max(share.taken)
     }
 
     /// The number of samples near `x` that the pattern does well with.
-    fn rounded(&self, x: f32) -> u32 {
-        let x = x.min(MOST as f32);
+    fn rounded(&self, x: f64) -> u32 {
+        let x = x.min(f64::from(MOST));
         match self.pattern {
             // Between powers of two a net is unbalanced: to the nearer one, in proportion.
             Pattern::Sobol => {
-                let x = (x * std::f32::consts::SQRT_2) as u32;
+                let x = (x * std::f64::consts::SQRT_2) as u32;
                 x.checked_ilog2().map_or(0, |log| 1 << log)
             }
             Pattern::Random => x as u32,
-            Pattern::Grid | Pattern::Jittered => (x / self.unit as f32).round() as u32 * self.unit,
+            Pattern::Grid | Pattern::Jittered => {
+                (x / f64::from(self.unit)).round() as u32 * self.unit
+            }
         }
     }
 
-    fn outcome(&self, scale: f32, least: u32) -> Outcome {
-        let exponent = exponent(self.pattern) as f32;
-        let parts: Vec<Outcome> = self
-            .tiles
-            .par_iter()
-            .map(|tile| {
-                let mut sum = Outcome::default();
-                for share in &tile.shares {
-                    let count = self.count(share, scale, least);
-                    sum.samples += u64::from(count);
-                    sum.error += f64::from(share.weight * (count as f32).powf(-exponent));
-                }
-                sum.rays = sum.samples as f64 * tile.cost;
-                sum
-            })
-            .collect();
-        let mut total = Outcome::default();
-        for part in parts {
-            total.samples += part.samples;
-            total.rays += part.rays;
-            total.error += part.error;
+    fn outcome(&self, scale: f64, least: u32) -> Outcome {
+        let exponent = exponent(self.pattern);
+        let mut sum = Outcome::default();
+        for &(share, class) in &self.classes {
+            let count = self.count(share, scale, least);
+            sum.samples += class.count * u64::from(count);
+            sum.rays += class.cost * f64::from(count);
+            sum.error += class.weight * f64::from(count).powf(-exponent);
         }
-        total
+        sum
     }
 }
 
@@ -290,7 +311,7 @@ impl<'a> Measured<'a> {
     }
 
     /// Its allotment; `film_factor` is `error` over `model` for the whole film.
-    fn shares(self, film_factor: f64, exponent: f64) -> TileShares {
+    fn shares(self, film_factor: f64, exponent: f64) -> (Vec<Share>, Classes) {
         let factor = if self.model > 0.0 {
             let own = self.error / self.model;
             (self.pixels * own + FILM * film_factor) / (self.pixels + FILM)
@@ -304,23 +325,26 @@ impl<'a> Measured<'a> {
                 .map(|&n| f64::from(n))
                 .sum::<f64>()
         };
-        let cost = self.tile.rays.total() as f64 / taken(self.tile).max(1.0);
-        let power = (1.0 / (1.0 + exponent)) as f32;
-        let pixels = self.tile.taken.iter().zip(&self.difficulty);
-        let shares = pixels.flat_map(|(taken, difficulty)| {
-            [0, 1].map(|half| {
-                let weight = 0.25 * factor as f32 * difficulty[half];
-                Share {
+        let cost = (self.tile.rays.total() as f64 / taken(self.tile).max(1.0)).max(1.0);
+        let power = 1.0 / (1.0 + exponent);
+        let mut shares = Vec::with_capacity(2 * self.difficulty.len());
+        let mut classes = Classes::new();
+        for (taken, difficulty) in self.tile.taken.iter().zip(&self.difficulty) {
+            for half in 0..2 {
+                let weight = 0.25 * factor * f64::from(difficulty[half]);
+                let score = (weight.max(LEAST_WEIGHT) / cost).log2() * power;
+                let share = Share {
+                    score: (STEPS_PER_OCTAVE * score).round() as i16,
                     taken: taken[half],
-                    weight,
-                    score: (weight / cost as f32).powf(power),
-                }
-            })
-        });
-        TileShares {
-            cost,
-            shares: shares.collect(),
+                };
+                let class = classes.entry(share).or_default();
+                class.count += 1;
+                class.cost += cost;
+                class.weight += weight;
+                shares.push(share);
+            }
         }
+        (shares, classes)
     }
 }
 

@@ -178,8 +178,9 @@ mod tests {
                     let integrator = integrator(job.scene, job.settings);
                     let mut beyond = 0;
                     let mut lit_beyond = 0;
+                    let rays = job.camera.rays(job.settings.size);
                     for (pixel, index) in job.crop.pixels().flat_map(|p| [(p, 0), (p, 5)]) {
-                        let (ray, sampler) = camera_sample(job, pixel, index);
+                        let (ray, sampler) = camera_sample(job, &rays, pixel, index);
                         let mut log = RayLog::default();
                         let value = integrator.radiance(&ray, &sampler, &mut log);
                         beyond += u32::from(foreground.is_beyond(pixel));

@@ -84,7 +84,7 @@ impl Course {
     pub fn aim(&self, tiles: &mut [Tile], step: &Step) {
         match self {
             Self::Uniform(uniform) => aim_all(tiles, uniform.halves(step.reach as u64)),
-            Self::Adaptive(allotment) => allotment.aim(tiles, step.reach as f32),
+            Self::Adaptive(allotment) => allotment.aim(tiles, step.reach),
         }
     }
 }

@@ -142,27 +142,23 @@ impl Bounds<'_> {
 
     /// Where `course` leads to.
     pub fn forecast(&self, course: &Course) -> Forecast {
-        let enough = |o: &Outcome| o.samples <= self.most_samples;
-        let end = course
-            .furthest(|o| enough(o) && self.is_in_time(o) && self.is_short_of(o, 1.0))
-            .outcome;
-        // The limit that one step further breaks.
-        let mut beyond = end;
-        beyond.rays += 0.01 * end.rays;
-        let stopped_by = if self
-            .limits
-            .error
-            .is_some_and(|e| self.error(&end) <= 1.02 * e)
+        let is_possible = |o: &Outcome| o.samples <= self.most_samples && self.is_in_time(o);
+        let mut end = course.furthest(is_possible).outcome;
+        let mut error = self.error(&end);
+        let mut stopped_by = StoppedBy::Time;
+        if let Some(enough) = self.limits.error.filter(|enough| error <= *enough) {
+            let before = |o: &Outcome| is_possible(o) && self.is_short_of(o, 1.0);
+            end = course.furthest(before).outcome;
+            error = enough;
+            stopped_by = StoppedBy::Error;
+        } else if self.limits.deadline.is_none()
+            || 1.1 * end.samples as f64 > self.most_samples as f64
         {
-            StoppedBy::Error
-        } else if !self.is_in_time(&beyond) {
-            StoppedBy::Time
-        } else {
-            StoppedBy::Samples
-        };
+            stopped_by = StoppedBy::Samples;
+        }
         Forecast {
             seconds: self.seconds(&end),
-            error: self.error(&end),
+            error,
             error_now: self.error_now,
             samples: end.samples,
             stopped_by,

@@ -37,7 +37,7 @@ use tile::{Halves, Tile, assemble, error_of, tiles};
 /// Samples of each half of each pixel before an error is believed and samples are allotted.
 const FIRST_SAMPLES: u32 = 4;
 /// By what a pass multiplies the number of samples, where somebody waits for a limit.
-const GROWTH: f64 = 1.3;
+const GROWTH: f64 = 1.5;
 /// The least by which a pass multiplies it; the first that adds a sample.
 const LEAST_GROWTHS: [f64; 4] = [1.02, 1.3, 2.0, 4.0];
 /// The share of the work after which a forecast is made.
@@ -289,7 +289,8 @@ impl Run<'_> {
             o.samples <= grown(GROWTH) && bounds.is_in_time(o) && bounds.is_short_of(o, 0.99)
         });
         // Near a limit passes would become ever smaller; and some courses have no small steps.
-        let least = LEAST_GROWTHS.map(|growth| course.furthest(|o| o.samples <= grown(growth)));
+        let least = LEAST_GROWTHS.into_iter();
+        let least = least.map(|growth| course.furthest(|o| o.samples <= grown(growth)));
         std::iter::once(wanted)
             .filter(|step| step.outcome.samples > grown(LEAST_GROWTHS[0]))
             .chain(least)

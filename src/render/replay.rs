@@ -36,7 +36,7 @@ pub struct ReplayedRay {
 
 /// Traces sample `index` of `pixel` again and keeps its rays.
 pub fn replay(job: &Job, pixel: UVec2, index: u32) -> Replay {
-    let (ray, sampler) = camera_sample(job, pixel, index);
+    let (ray, sampler) = camera_sample(job, &job.camera.rays(job.settings.size), pixel, index);
     let mut log = RayLog::keeping();
     let value = integrator(job.scene, job.settings).radiance(&ray, &sampler, &mut log);
     let in_world = |record: RayRecord| {

@@ -3,7 +3,7 @@
 use super::Job;
 use super::backdrop::Foreground;
 use super::stop::Stop;
-use crate::camera::film_position;
+use crate::camera::{CameraRays, film_position};
 use crate::film::{ErrorSums, Film, Pixel, RayCounts, Rect, RejectedSample, StoppedBy};
 use crate::integrate::{FirstSurface, Integrator, RayLog};
 use crate::math::{Ray, UVec2, Vec2};
@@ -65,6 +65,7 @@ impl Tile {
         stop: &Stop,
     ) -> u64 {
         let sets = job.settings.sampling.pattern.sets();
+        let rays = job.camera.rays(job.settings.size);
         let mut log = RayLog::default();
         let mut done = 0;
         'pixels: for (i, pixel) in self.rect.pixels().enumerate() {
@@ -75,7 +76,7 @@ impl Tile {
                         break 'pixels;
                     }
                     let index = sample * sets + half as u32;
-                    let sample = (!is_beyond).then(|| camera_sample(job, pixel, index));
+                    let sample = (!is_beyond).then(|| camera_sample(job, &rays, pixel, index));
                     let value = match &sample {
                         Some((ray, sampler)) => integrator.radiance(ray, sampler, &mut log),
                         None => {
@@ -125,7 +126,12 @@ impl Tile {
 }
 
 /// Sample `index` of `pixel`: its ray from the camera, and its other numbers.
-pub(super) fn camera_sample(job: &Job, pixel: UVec2, index: u32) -> (Ray, Sampler) {
+pub(super) fn camera_sample(
+    job: &Job,
+    rays: &CameraRays<'_>,
+    pixel: UVec2,
+    index: u32,
+) -> (Ray, Sampler) {
     let sampler = Sampler::new(&job.settings.sampling, pixel, index);
     let film = film_position(pixel, sampler.camera());
     let lens = if job.camera.lens_radius > 0.0 {
@@ -133,7 +139,7 @@ pub(super) fn camera_sample(job: &Job, pixel: UVec2, index: u32) -> (Ray, Sample
     } else {
         Vec2::ZERO
     };
-    (job.camera.ray(film, job.settings.size, lens), sampler)
+    (rays.at(film, lens), sampler)
 }
 
 /// The tiles of the job's part of the film, row by row.

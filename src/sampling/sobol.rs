@@ -44,32 +44,32 @@ fn unit_interval(reversed: u32) -> f32 {
     (reversed.reverse_bits() >> 8) as f32 * (1.0 / (1 << 24) as f32)
 }
 
-/// Point `index` of the Sobol sequence: x in the lower half of the result and y in the upper,
+/// Point `index` of the Sobol sequence (Joe and Kuo 2008, "Constructing Sobol Sequences with
+/// Better Two-Dimensional Projections"): x in the lower half of the result and y in the upper,
 /// each with the bits behind its point in reverse order.
 fn unscrambled(index: u32, pair: Pair) -> u64 {
-    let table = &TABLES[pair as usize];
-    (0..8).fold(0, |sum, k| sum ^ table[k][(index >> (4 * k)) as usize & 15])
+    match pair {
+        Pair::First => u64::from(pascal(index)) << 32 | u64::from(index),
+        Pair::Second => (0..8).fold(0, |sum, k| sum ^ TABLE[k][(index >> (4 * k)) as usize & 15]),
+    }
+}
+
+/// The second dimension, whose direction numbers are the rows of Pascal's triangle modulo 2: the
+/// bits of `index` as a polynomial p(x) become those of p(x + 1). From halves on down,
+/// x^k h + l becomes (x^k + 1) h + l, for (x + 1)^k is x^k + 1 for each power of two k.
+fn pascal(mut index: u32) -> u32 {
+    index ^= index >> 16;
+    index ^= (index & 0xff00_ff00) >> 8;
+    index ^= (index & 0xf0f0_f0f0) >> 4;
+    index ^= (index & 0xcccc_cccc) >> 2;
+    index ^ (index & 0xaaaa_aaaa) >> 1
 }
 
 /// Sums of direction numbers for the 16 values of each of the 8 half bytes of an index.
 type Table = [[u64; 16]; 8];
 
-/// The first four dimensions of Joe and Kuo 2008, "Constructing Sobol Sequences with Better
-/// Two-Dimensional Projections": primitive polynomials and first direction numbers.
-static TABLES: [Table; 2] = [
-    table(van_der_corput(), directions(0, &[1])),
-    table(directions(1, &[1, 3]), directions(1, &[1, 3, 1])),
-];
-
-const fn van_der_corput() -> [u32; 32] {
-    let mut v = [0; 32];
-    let mut k = 0;
-    while k < 32 {
-        v[k] = 1 << (31 - k);
-        k += 1;
-    }
-    v
-}
+/// The third and fourth dimension: primitive polynomials and first direction numbers.
+static TABLE: Table = table(directions(1, &[1, 3]), directions(1, &[1, 3, 1]));
 
 /// Direction numbers from the inner coefficients `a` of the polynomial (as the bits of a number,
 /// highest power first) and the first `m`.

@@ -4,7 +4,8 @@ use glam::Vec3;
 use halfshade::bvh::{Builder, Bvh, TraversalCounts, Width};
 use halfshade::math::Ray;
 
-use super::meshes::{Mesh, bunny, soup, sphere, terrain};
+use super::meshes::{Mesh, bunny, room, soup, sphere, terrain};
+use super::reference::check;
 
 #[test]
 fn the_tree_is_the_same_for_any_number_of_threads() {
@@ -40,6 +41,41 @@ fn balanced_beats_median_beats_none() {
         balanced < median && 20 * median < none,
         "{balanced} {median} {none}"
     );
+}
+
+/// The tree of `Fast` is not much worse than that of `Balanced`, and `Quality` no worse.
+#[test]
+fn builders_are_worth_their_time() {
+    let mesh = room();
+    let rays = mesh.rays(2000, 54);
+    let work = |builder: Builder| {
+        let tree = mesh.tree(builder);
+        let mut counts = TraversalCounts::default();
+        for ray in &rays {
+            tree.closest_hit_counted(ray, &mut counts);
+        }
+        // About the time that each takes.
+        (2 * counts.nodes + 7 * counts.leaves) as f64
+    };
+    let [fast, balanced, quality] = [Builder::Fast, Builder::Balanced, Builder::Quality].map(work);
+    println!("fast {fast}, balanced {balanced}, quality {quality}");
+    assert!(fast < 1.4 * balanced, "{fast} {balanced}");
+    assert!(quality < 0.98 * balanced, "{quality} {balanced}");
+}
+
+/// A mesh whose triangles `Quality` cuts by the thousand, against brute force.
+#[test]
+fn cut_triangles_are_hit_as_if_they_were_whole() {
+    let mesh = room();
+    let rays = mesh.rays(300, 55);
+    for (name, tree) in mesh.trees() {
+        assert_eq!(tree.stats().triangles, mesh.indices.len(), "{name}");
+        for ray in &rays {
+            let hit = tree.closest_hit(ray);
+            assert_eq!(hit.is_some(), tree.any_hit(ray), "{name}");
+            check(&mesh, ray, hit, 1e-9);
+        }
+    }
 }
 
 #[test]

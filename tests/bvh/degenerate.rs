@@ -6,7 +6,12 @@ use halfshade::math::Ray;
 
 use super::meshes::{Mesh, Random, soup, sphere};
 
-const BUILDERS: [Builder; 2] = [Builder::Median, Builder::Balanced];
+const BUILDERS: [Builder; 4] = [
+    Builder::Median,
+    Builder::Fast,
+    Builder::Balanced,
+    Builder::Quality,
+];
 
 #[test]
 fn nothing_is_never_hit() {

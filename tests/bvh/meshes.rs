@@ -169,6 +169,32 @@ pub fn terrain(side: u32) -> Mesh {
     mesh
 }
 
+/// Large and small triangles: walls, slanted beams from wall to wall, needles, and balls on the
+/// floor.
+pub fn room() -> Mesh {
+    let mut random = Random(61);
+    let mut mesh = Mesh::default();
+    let mut quad = |a: Vec3, u: Vec3, v: Vec3| {
+        mesh.add([a, a + u, a + v]);
+        mesh.add([a + u + v, a + v, a + u]);
+    };
+    for (u, v) in [(Vec3::X, Vec3::Y), (Vec3::Y, Vec3::Z), (Vec3::Z, Vec3::X)] {
+        quad(-4.0 * Vec3::ONE, 8.0 * u, 8.0 * v);
+        quad(4.0 * Vec3::ONE, -8.0 * u, -8.0 * v);
+    }
+    for _ in 0..120 {
+        let (start, way) = (3.9 * random.vector(), 3.0 * random.vector());
+        quad(start, way, 0.03 * random.vector());
+        quad(start, 1e-5 * random.vector(), way);
+    }
+    for _ in 0..12 {
+        let center = 3.5 * random.vector();
+        let ball = sphere(3).map(|p| center + 0.3 * p);
+        (0..ball.indices.len()).for_each(|i| mesh.add(ball.corners(i)));
+    }
+    mesh
+}
+
 /// The Stanford bunny of the project's model collection, where that is at hand.
 pub fn bunny() -> Option<Mesh> {
     let models = std::env::var("HALFSHADE_MODELS").map_or_else(

@@ -1,6 +1,6 @@
 //! G1: nothing escapes from a closed mesh.
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 use halfshade::bvh::Builder;
 use halfshade::math::Ray;
 
@@ -104,6 +104,30 @@ fn nothing_escapes_through_t_junctions() {
         Vec3::new(0.999, 0.999, -0.999),
     ] {
         assert_eq!(escapes(&mesh, center), 0, "{center}");
+    }
+}
+
+/// Slanted triangles of all sizes, which spatial splits cut: a large box around, turned, some of
+/// whose triangles are divided again and again.
+#[test]
+fn nothing_escapes_where_large_triangles_meet_small_ones() {
+    let turn = Quat::from_rotation_x(0.3) * Quat::from_rotation_z(0.7);
+    for scale in [1e-6, 1.0, 1e6] {
+        let mut mesh = sphere(0);
+        for round in 0..600 {
+            let [a, b, c] = mesh.corners(mesh.indices.len() - 1 - round % 3);
+            let at = mesh.indices.len() - 1 - round % 3;
+            let middle = (a + b + c) / 3.0;
+            let [i, j, k] = mesh.indices[at];
+            let new = mesh.positions.len() as u32;
+            mesh.positions.push(middle);
+            mesh.indices[at] = [i, j, new];
+            mesh.indices.extend([[j, k, new], [k, i, new]]);
+        }
+        let mesh = mesh.map(|p| scale * (turn * p));
+        assert_eq!(escapes(&mesh, Vec3::ZERO), 0, "scale {scale}");
+        let aside = scale * Vec3::new(0.3, -0.2, 0.4);
+        assert_eq!(escapes(&mesh, aside), 0, "scale {scale}");
     }
 }
 

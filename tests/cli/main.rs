@@ -7,6 +7,7 @@ mod files;
 mod help;
 #[cfg(unix)]
 mod interrupt;
+mod limits;
 mod terminal;
 
 use std::fs;
@@ -252,7 +253,7 @@ fn a_model_by_itself_becomes_a_picture_of_its_name() {
 #[test]
 fn one_render_writes_many_files_with_layers() {
     let folder = folder();
-    let all = "albedo,normal,depth,variance,samples";
+    let all = "albedo,normal,depth,variance,samples,error,half_a,half_b";
     render_well(
         folder.path(),
         &["-o", "a.png", "-o", "b.EXR", "--png16", "--layers", all],
@@ -272,6 +273,13 @@ fn one_render_writes_many_files_with_layers() {
         "albedo.G",
         "albedo.R",
         "depth.Z",
+        "error.Y",
+        "half_a.B",
+        "half_a.G",
+        "half_a.R",
+        "half_b.B",
+        "half_b.G",
+        "half_b.R",
         "normal.X",
         "normal.Y",
         "normal.Z",
@@ -286,6 +294,11 @@ fn one_render_writes_many_files_with_layers() {
     assert!(values("samples.Y").iter().all(|&v| v == 4.0));
     assert!(values("depth.Z").iter().any(|&v| v > 1.0));
     assert!(values("variance.G").iter().any(|&v| v > 0.0));
+    assert!(values("error.Y").iter().any(|&v| v > 0.0));
+    let halves = values("half_a.G").iter().zip(values("half_b.G"));
+    for ((a, b), g) in halves.zip(values("G")) {
+        assert!((0.5 * (a + b) - g).abs() <= 1e-6 * g.abs(), "{a} {b} {g}");
+    }
     let floor = values("normal.Y").iter().filter(|&&y| y > 0.999).count();
     assert!(floor > 100, "{floor} pixels show the floor's normal");
 }
@@ -303,6 +316,24 @@ fn the_same_bits_for_any_number_of_threads() {
         assert!(with(threads) == one, "{threads} threads");
     }
     assert_ne!(digest(folder.path(), &["--seed", "1"]), one.0);
+}
+
+#[test]
+fn more_memory_than_allowed_is_refused_before_the_build() {
+    let folder = folder();
+    let output = render(folder.path(), &["--max-memory", "1M"]);
+    assert_eq!(output.status.code(), Some(1));
+    let message = stderr(&output);
+    assert!(
+        message.contains("balanced tree over 6 triangles"),
+        "{message}"
+    );
+    assert!(
+        message.contains("--max-memory allows (1.0 MiB)"),
+        "{message}"
+    );
+    assert!(!folder.path().join("scene.png").exists());
+    render_well(folder.path(), &["--max-memory", "1G"]);
 }
 
 #[test]
@@ -421,7 +452,11 @@ fn stats_have_the_documented_keys() {
     assert_eq!(stats["stopped_by"], "samples");
     assert_eq!(stats["rejected_samples"], 0);
     assert_eq!(stats["sha256"].as_str().unwrap().len(), 64);
-    for key in ["error", "left_out", "cpu_seconds", "peak_memory_bytes"] {
+    let error = |key: &str| stats["error"][key].as_f64().unwrap();
+    assert_eq!(stats["error"]["metric"], "sqrt-relmse");
+    assert!(0.0 < error("low") && error("low") < error("estimate"));
+    assert!((0.0..=1.0).contains(&error("worst_share")));
+    for key in ["left_out", "cpu_seconds", "peak_memory_bytes"] {
         assert!(stats.as_object().unwrap().contains_key(key), "{key}");
     }
     let seconds = |key: &str| stats["seconds"][key].as_f64().unwrap();

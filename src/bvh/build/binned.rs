@@ -56,8 +56,8 @@ impl BinnedSplit {
         let binning = Binning::new::<N>(&part.centroids);
         let bins = binning.fill::<N>(part.primitives());
         let mut best: Option<Self> = None;
-        for axis in 0..3 {
-            let Some((cost, border)) = bins[axis].best_border(block_size) else {
+        for (axis, bins) in bins.iter().enumerate() {
+            let Some((cost, border)) = bins.best_border(block_size) else {
                 continue;
             };
             if best.as_ref().is_none_or(|best| cost < best.cost) {
@@ -65,7 +65,7 @@ impl BinnedSplit {
                     binning,
                     axis,
                     border,
-                    sides: bins[axis].sides(border),
+                    sides: bins.sides(border),
                     cost,
                 });
             }
@@ -199,13 +199,13 @@ impl<const N: usize> Bins<N> {
         let (mut bounds, mut count) = (Bounds::EMPTY, 0);
         let mut best = None;
         let mut best_cost = f64::INFINITY;
-        for border in 1..N {
+        for (border, right_cost) in right_costs.into_iter().enumerate().skip(1) {
             bounds.add(&self.bounds[border - 1]);
             count += self.counts[border - 1];
             if count == 0 {
                 continue;
             }
-            let cost = side_cost(&bounds, count, block_size) + right_costs[border];
+            let cost = side_cost(&bounds, count, block_size) + right_cost;
             if cost < best_cost {
                 best_cost = cost;
                 best = Some((cost, border));

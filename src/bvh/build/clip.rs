@@ -30,7 +30,7 @@ impl Clipper {
     pub fn new(positions: &[Vec3], triangle: [u32; 3]) -> Option<Self> {
         let [a, b, c] = corners(positions, triangle).map(Vec3A::from);
         let extent = (a.max(b).max(c) - a.min(b).min(c)).max_element();
-        EXTENTS.contains(&extent).then(|| Self {
+        EXTENTS.contains(&extent).then_some(Self {
             corners: [a, b, c],
             margin: MARGIN * extent,
         })

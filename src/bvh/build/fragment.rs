@@ -61,7 +61,8 @@ impl<const W: usize> Fragment<W> {
             let numbers = &self.order[range.start as usize..range.end as usize];
             for (lane, &triangle) in numbers.iter().enumerate() {
                 let corners = corners(positions, indices[triangle as usize]);
-                block.set(lane, &corners.map(|p| p.to_array()), triangle);
+                let [a, b, c] = corners;
+                block.set(lane, &[a.to_array(), b.to_array(), c.to_array()], triangle);
             }
             block
         };

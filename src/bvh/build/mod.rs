@@ -13,6 +13,7 @@ mod clusters;
 mod collapse;
 mod fragment;
 mod median;
+mod memory;
 mod morton;
 mod part;
 mod partition;
@@ -28,7 +29,7 @@ use binned::Binned;
 use clusters::make_clustered_tree;
 use fragment::Fragment;
 use glam::Vec3A;
-use part::{Part, scan};
+use part::{PARALLEL, Part, scan};
 use primitive::{Primitive, primitives};
 use spatial::Spatial;
 use wide::{Splitter, make_tree};
@@ -65,8 +66,13 @@ pub(super) fn build<const W: usize>(
     let mut fragment = match builder {
         Builder::None => leaves_only(&primitives),
         Builder::Median => make_tree(Part::new(&mut primitives), &Halves),
-        Builder::Fast => make_clustered_tree(std::mem::take(&mut primitives), &centroids),
-        Builder::Balanced => make_tree(Part::new(&mut primitives), &Binned { leaf_size: W }),
+        // Few triangles in many cells would leave leaves empty.
+        Builder::Fast if triangles > PARALLEL => {
+            make_clustered_tree(std::mem::take(&mut primitives), &centroids)
+        }
+        Builder::Fast | Builder::Balanced => {
+            make_tree(Part::new(&mut primitives), &Binned { leaf_size: W })
+        }
         Builder::Quality => {
             let room = primitives.len() * ROOM_PERCENT / 100;
             let (count, filler) = (

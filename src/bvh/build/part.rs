@@ -64,28 +64,17 @@ impl<'a> Part<'a> {
     }
 
     /// The two sides of a split after which the first `left` primitives are the left one;
-    /// `sides` are the boxes around the right and left side, and around their centroids.
-    ///
-    /// Room is shared by the sides' cost, so that it is used where rays are, but no more than
-    /// would double a side.
+    /// `bounds` and `centroids` are those of the right and of the left side.
     pub fn cut(self, left: usize, bounds: [Bounds; 2], centroids: [Bounds; 2]) -> (Self, Self) {
         let right = self.count - left;
-        let room = self.room();
-        let left_room = if room == 0 {
-            0
-        } else {
-            let [right_cost, left_cost] = [(&bounds[0], right), (&bounds[1], left)]
-                .map(|(bounds, count)| side_cost(bounds, count as u32, 1));
-            let share = left_cost / (left_cost + right_cost).max(f64::MIN_POSITIVE);
-            let fair = (share * room as f64) as usize;
-            fair.clamp(
-                room.saturating_sub(right),
-                left.max(room.saturating_sub(right)),
-            )
-            .min(room)
+        let left_room = match self.room() {
+            0 => 0,
+            room => share_room(room, &bounds, [right, left]),
         };
         let middle = left + left_room;
-        self.storage.copy_within(left..self.count, middle);
+        if left_room > 0 {
+            self.storage.copy_within(left..self.count, middle);
+        }
         let (left_storage, right_storage) = self.storage.split_at_mut(middle);
         let [right_bounds, left_bounds] = bounds;
         let [right_centroids, left_centroids] = centroids;
@@ -112,6 +101,17 @@ impl<'a> Part<'a> {
         front.copy_from_slice(left);
         back.copy_from_slice(right);
     }
+}
+
+/// How much of `room` the left side gets. It is shared by the sides' cost, so that it is used
+/// where rays are, but a side gets no more than would double it while the other can use it.
+fn share_room(room: usize, bounds: &[Bounds; 2], [right, left]: [usize; 2]) -> usize {
+    let right_cost = side_cost(&bounds[0], right as u32, 1);
+    let left_cost = side_cost(&bounds[1], left as u32, 1);
+    let share = left_cost / (left_cost + right_cost).max(f64::MIN_POSITIVE);
+    let least = room.saturating_sub(right);
+    let most = left.max(least).min(room);
+    ((share * room as f64) as usize).clamp(least, most)
 }
 
 /// Boxes around primitives and around their centroids.

@@ -75,18 +75,7 @@ pub(super) fn corners(positions: &[Vec3], [a, b, c]: [u32; 3]) -> [Vec3; 3] {
 /// The primitives of all triangles that can be hit: those with an area and finite corners.
 pub(super) fn primitives(positions: &[Vec3], indices: &[[u32; 3]]) -> Vec<Primitive> {
     let of_triangle = |(i, &triangle): (usize, &[u32; 3])| {
-        let corners = corners(positions, triangle);
-        let [a, b, c] = corners.map(Vec3A::from);
-        let usable =
-            [a, b, c].iter().all(|p| p.is_finite()) && has_area(&corners.map(|p| p.to_array()));
-        let bounds = if usable {
-            Bounds {
-                min: a.min(b).min(c),
-                max: a.max(b).max(c),
-            }
-        } else {
-            Bounds::EMPTY
-        };
+        let bounds = bounds_of(corners(positions, triangle)).unwrap_or(Bounds::EMPTY);
         Primitive::new(bounds.min, bounds.max, i as u32)
     };
     // All at once into one vector, which `filter_map` could not do; few meshes have unusable ones.
@@ -100,4 +89,20 @@ pub(super) fn primitives(positions: &[Vec3], indices: &[[u32; 3]]) -> Vec<Primit
         primitives.retain(Primitive::is_usable);
     }
     primitives
+}
+
+/// The box of a triangle; `None` where it can never be hit.
+#[inline(always)]
+fn bounds_of(corners: [Vec3; 3]) -> Option<Bounds> {
+    let [p, q, r] = corners;
+    let (a, b, c) = (Vec3A::from(p), Vec3A::from(q), Vec3A::from(r));
+    // Rounded products differ only where the exact ones do, so most triangles pass here.
+    let (e, f) = (b.as_dvec3() - a.as_dvec3(), c.as_dvec3() - a.as_dvec3());
+    let is_plain = e.x * f.y != e.y * f.x || e.y * f.z != e.z * f.y || e.z * f.x != e.x * f.z;
+    let is_finite = a.is_finite() && b.is_finite() && c.is_finite();
+    let usable = is_finite && (is_plain || has_area(&[p.to_array(), q.to_array(), r.to_array()]));
+    usable.then(|| Bounds {
+        min: a.min(b).min(c),
+        max: a.max(b).max(c),
+    })
 }

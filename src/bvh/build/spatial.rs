@@ -6,18 +6,23 @@
 //! # Why no hit is lost
 //!
 //! `caster` shows that a walk reaches every box that holds the point of a hit but for the
-//! rounding of the ray. That point is within a tiny share of the triangle's extent (`clip`'s
-//! margin is more) from some point of the triangle itself, and is in the triangle's box. A
-//! triangle starts as one part; each cut divides a part's points among two parts; and the box of
-//! a part holds, of the triangle's box, everything within the margin of the part. So one of
-//! the boxes holds the hit.
+//! rounding of the ray. That point is in the triangle's box, and no farther from some point of
+//! the triangle than rounding moves it: by E r / A, where E is the error bound of an edge
+//! function, r the triangle's reach and A its area as the ray sees it (see `triangle`). `clip`'s
+//! margin is more while A > 2^24 E. A triangle starts as one part; each cut divides a part's
+//! points among two; and the box of a part holds, of the triangle's box, everything within the
+//! margin of the part. So one of the boxes holds the hit.
+//!
+//! What is left are triangles seen so nearly edge-on that f64 cannot tell where along them the
+//! ray passes. Among those, a cut may decide whether one is hit.
 
 use super::binned::{Binned, BinnedSplit, side_cost};
 use super::bounds::Bounds;
 use super::clip::Clipper;
+use super::collapse::Branches;
 use super::part::{PARALLEL, PIECE, Part, scan};
 use super::primitive::Primitive;
-use super::wide::Splitter;
+use super::wide::{Splitter, grow_tree};
 use crate::math::Vec3;
 use glam::Vec3A;
 use rayon::prelude::*;
@@ -26,12 +31,25 @@ use rayon::prelude::*;
 /// the whole scene's surface, cutting is not tried (α of Stich et al.).
 const LEAST_OVERLAP: f64 = 1e-5;
 
+/// The same as a share of the part's own surface: less is not worth the search.
+const LEAST_OWN_OVERLAP: f64 = 0.15;
+
+/// Above small parts, whose trees are compared as a whole, a cut must bring the expected cost
+/// down to this share of an ordinary split's. Many cuts that seem to gain a little there send
+/// large triangles into all leaves of small neighbours and lose.
+const CLEAR_GAIN: f64 = 0.7;
+
+/// A leaf is split in two where that brings the area of leaves down to this share.
+const SPLIT_LEAF: f64 = 0.8;
+
 /// [`Builder::Quality`](super::Builder::Quality).
 pub(super) struct Spatial<'a> {
     positions: &'a [Vec3],
     indices: &'a [[u32; 3]],
     leaf_size: usize,
     least_overlap: f64,
+    /// Cutting must take the cost below so many times that of an ordinary split.
+    most_cost: f64,
 }
 
 impl<'a> Spatial<'a> {
@@ -47,6 +65,7 @@ impl<'a> Spatial<'a> {
             indices,
             leaf_size,
             least_overlap: LEAST_OVERLAP * bounds.half_area(),
+            most_cost: CLEAR_GAIN,
         }
     }
 
@@ -62,21 +81,91 @@ impl Splitter for Spatial<'_> {
 
     fn split<'a>(&self, mut part: Part<'a>) -> Result<(Part<'a>, Part<'a>), Part<'a>> {
         let Some(binned) = BinnedSplit::find(&part, self.leaf_size) else {
-            return Binned {
-                leaf_size: self.leaf_size,
-            }
-            .split(part);
+            return Err(part);
         };
         let [right, left] = &binned.sides;
-        if part.room() > 0 && left.overlap(right).half_area() > self.least_overlap {
-            if let Some(cut) = PlaneSplit::find(self, &part)
-                && cut.cost < binned.cost
-                && let Some((left, bounds, centroids)) = cut.apply(self, &mut part)
-            {
-                return Ok(part.cut(left, bounds, centroids));
-            }
+        let least = LEAST_OWN_OVERLAP * part.bounds.half_area();
+        if part.room() > 0
+            && left.overlap(right).half_area() > least.max(self.least_overlap)
+            && let Some(cut) = PlaneSplit::find(self, &part)
+            && cut.cost < binned.cost * self.most_cost
+            && let Some((left, bounds, centroids)) = cut.apply(self, &mut part)
+        {
+            return Ok(part.cut(left, bounds, centroids));
         }
         Ok(binned.apply(part))
+    }
+
+    /// The better one of two trees: without cuts, and with all that seem to gain.
+    fn grow_small<const W: usize>(&self, part: Part<'_>) -> Branches<W> {
+        let mut copy = part.primitives().to_vec();
+        let plain = grow_tree(
+            Part::new(&mut copy),
+            &Fine {
+                leaf_size: self.leaf_size,
+            },
+        );
+        if part.room() == 0 {
+            return plain;
+        }
+        let eager = Self {
+            most_cost: 1.0,
+            ..*self
+        };
+        let cut = grow_tree(part, &eager);
+        if cut.cost() < plain.cost() {
+            cut
+        } else {
+            plain
+        }
+    }
+
+    fn grow_leaf<const W: usize>(
+        &self,
+        part: Part<'_>,
+        depth: usize,
+        out: &mut Branches<W>,
+    ) -> usize {
+        Fine {
+            leaf_size: self.leaf_size,
+        }
+        .grow_leaf(part, depth, out)
+    }
+}
+
+/// Ordinary splits, also of leaves where that makes them much smaller.
+struct Fine {
+    leaf_size: usize,
+}
+
+impl Splitter for Fine {
+    fn leaf_size(&self) -> usize {
+        self.leaf_size
+    }
+
+    fn split<'a>(&self, part: Part<'a>) -> Result<(Part<'a>, Part<'a>), Part<'a>> {
+        Binned {
+            leaf_size: self.leaf_size,
+        }
+        .split(part)
+    }
+
+    fn grow_leaf<const W: usize>(
+        &self,
+        part: Part<'_>,
+        depth: usize,
+        out: &mut Branches<W>,
+    ) -> usize {
+        match BinnedSplit::find(&part, self.leaf_size) {
+            Some(split) if split.cost < SPLIT_LEAF * part.bounds.half_area() => {
+                let bounds = part.bounds;
+                let (left, right) = split.apply(part);
+                let left = self.grow_leaf(left, depth + 1, out);
+                let right = self.grow_leaf(right, depth + 1, out);
+                out.add_node(bounds, [left, right])
+            }
+            _ => out.add_leaf(part.bounds, part.primitives().iter().map(Primitive::index)),
+        }
     }
 }
 
@@ -92,10 +181,10 @@ struct PlaneSplit {
 
 impl PlaneSplit {
     fn find(context: &Spatial, part: &Part<'_>) -> Option<Self> {
-        if part.len() < 256 {
-            Self::find_among::<8>(context, part)
-        } else {
-            Self::find_among::<16>(context, part)
+        match part.len() {
+            0..64 => Self::find_among::<4>(context, part),
+            64..256 => Self::find_among::<8>(context, part),
+            _ => Self::find_among::<16>(context, part),
         }
     }
 
@@ -104,9 +193,9 @@ impl PlaneSplit {
         let bins = grid.fill::<N>(context, part.primitives());
         let most = part.len() + part.room();
         let mut best: Option<Self> = None;
-        for axis in 0..3 {
+        for (axis, bins) in bins.iter().enumerate() {
             for border in 1..N {
-                let sides = bins[axis].sides(border);
+                let sides = bins.sides(border);
                 let [(right, rights), (left, lefts)] = &sides;
                 let is_allowed = *rights > 0 && *lefts > 0 && (rights + lefts) as usize <= most;
                 if !is_allowed {
@@ -282,8 +371,7 @@ impl Grid {
         } else {
             context.clipper(primitive)
         };
-        for axis in 0..3 {
-            let bins = &mut bins[axis];
+        for (axis, bins) in bins.iter_mut().enumerate() {
             let (first, last) = (first[axis] as usize % N, last[axis] as usize % N);
             bins.first[first] += 1;
             bins.last[last] += 1;

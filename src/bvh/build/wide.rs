@@ -27,6 +27,14 @@ pub(super) trait Splitter: Sync {
     /// Cuts `part`, which is larger than a leaf; gives it back where it should be halved.
     fn split<'a>(&self, part: Part<'a>) -> Result<(Part<'a>, Part<'a>), Part<'a>>;
 
+    /// The binary tree of a small part.
+    fn grow_small<const W: usize>(&self, part: Part<'_>) -> Branches<W>
+    where
+        Self: Sized,
+    {
+        grow_tree(part, self)
+    }
+
     /// Adds what becomes of a part that is no larger than a leaf; returns the place of its root.
     fn grow_leaf<const W: usize>(
         &self,
@@ -125,9 +133,15 @@ fn make_small<const W: usize>(
     splitter: &impl Splitter,
     out: &mut Fragment<W>,
 ) -> ChildRef {
-    let mut branches = Branches::<W>::new(&part.bounds);
-    grow(part, splitter, 0, &mut branches);
+    let branches = splitter.grow_small(part);
     emit(&branches, branches.root(), out)
+}
+
+/// The binary tree of a small part by nothing but splits.
+pub(super) fn grow_tree<const W: usize>(part: Part<'_>, splitter: &impl Splitter) -> Branches<W> {
+    let mut branches = Branches::new(&part.bounds);
+    grow(part, splitter, 0, &mut branches);
+    branches
 }
 
 /// Adds the binary tree of `part`; returns the place of its root.
