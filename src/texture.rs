@@ -24,7 +24,7 @@ pub struct Image {
     pub width: u32,
     /// Rows; at least 1.
     pub height: u32,
-    /// `width * height` pixels.
+    /// `width * height` pixels; none of an image that was left out, since nothing reads it.
     pub pixels: Pixels,
 }
 

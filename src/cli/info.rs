@@ -4,25 +4,36 @@ use std::fmt::{self, Display};
 
 use clap::Args;
 use halfshade::bvh::Builder;
+use halfshade::film::Rect;
 use halfshade::import::{Imported, Warning, Warnings, import};
 use halfshade::light::Light;
-use halfshade::prepare::prepare;
-use halfshade::scene::Scene;
+use halfshade::prepare::prepare_keeping;
+use halfshade::render::{self, Job};
+use halfshade::scene::{Keep, LeftOut, Scene};
 use serde::Serialize;
 
 use super::Failure;
 use super::console::{Bytes, print, printable};
-use super::options::SceneArguments;
+use super::left_out::LeftOutLine;
+use super::measure::measure;
+use super::options::{KeepOptions, SceneArguments};
 
-/// Print what is in a scene or model, and what was ignored or repaired
+/// Print what is in a scene or model, what was ignored or repaired, and what is left out
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
   halfshade info scenes/house.toml
-  halfshade info bunny.obj --json")]
+  halfshade info bunny.obj --json
+  halfshade info model.glb --measure --set integrator.kind=depth
+      what a depth picture does not need, and what time and memory that saves")]
 pub struct InfoOptions {
     #[command(flatten)]
     scene: SceneArguments,
+    #[command(flatten)]
+    keep: KeepOptions,
+    /// Measure the time that is saved: imports, prepares and renders the scene small, several times
+    #[arg(long)]
+    measure: bool,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -30,9 +41,16 @@ pub struct InfoOptions {
 
 /// Does what the options say.
 pub fn run(options: &InfoOptions) -> Result<(), Failure> {
-    let imported = import(&options.scene.scene, &options.scene.import_options())
+    let keep = options.keep.keep();
+    let mut import_options = options.scene.import_options();
+    import_options.keep = keep;
+    let imported = import(&options.scene.scene, &import_options)
         .map_err(|error| Failure::of_import("info", &error))?;
-    let info = Info::of(&imported);
+    let mut info = Info::of(&imported, keep);
+    if options.measure {
+        measure(&options.scene.scene, &import_options, &mut info.left_out)
+            .map_err(|error| Failure::of_import("info", &error))?;
+    }
     if options.json {
         let json = serde_json::to_string_pretty(&info).map_err(Failure::job)?;
         print(json)
@@ -67,8 +85,8 @@ struct Info {
     /// Of meshes and images, and of what is made of them for rendering.
     memory_bytes: usize,
     warnings: Vec<Warning>,
-    /// What the scene does not need: nothing is left out yet.
-    left_out: &'static [&'static str],
+    /// What its picture does not need.
+    left_out: Vec<LeftOut>,
 }
 
 #[derive(Debug, Serialize)]
@@ -78,12 +96,22 @@ struct Bounds {
 }
 
 impl Info {
-    fn of(imported: &Imported) -> Self {
+    fn of(imported: &Imported, keep: Keep) -> Self {
         let scene = &imported.scene;
-        let prepared = prepare(scene, Builder::default());
+        let prepared = prepare_keeping(scene, Builder::default(), keep);
         let mut warnings: Warnings = imported.warnings.clone();
         warnings.extend(prepared.warnings);
         let added = imported.defaults.as_ref();
+        let mut left_out = [imported.left_out.as_slice(), &prepared.left_out].concat();
+        if let Some(camera) = scene.cameras.first() {
+            left_out.extend(render::left_out(&Job {
+                scene: &prepared.scene,
+                camera: prepared.scene.camera(camera),
+                settings: &imported.settings,
+                crop: Rect::full(imported.settings.size),
+                layers: Vec::new(),
+            }));
+        }
         Self {
             triangles: scene.triangle_count(),
             vertices: scene
@@ -105,7 +133,7 @@ impl Info {
             }),
             memory_bytes: scene.memory_bytes() + prepared.scene.memory_bytes(),
             warnings: warnings.iter().collect(),
-            left_out: &[],
+            left_out,
         }
     }
 }
@@ -147,6 +175,12 @@ impl Display for Table<'_> {
                 "\nWhat it lacks is added when it is rendered:\n\n{}",
                 added.text
             )?;
+        }
+        if !info.left_out.is_empty() {
+            write!(f, "\nLeft out, since the picture does not need it:")?;
+        }
+        for entry in &info.left_out {
+            write!(f, "\n  {}", LeftOutLine(entry))?;
         }
         if !info.warnings.is_empty() {
             write!(f, "\nWarnings:")?;

@@ -9,7 +9,7 @@ use halfshade::import::SceneOptions;
 use halfshade::math::UVec2;
 use halfshade::sampling::{Pattern, Target};
 use halfshade::scene::{
-    IntegratorKind, MAX_DEPTH, MAX_LIGHT_SAMPLES, MAX_SAMPLES, Settings, ToneMap,
+    IntegratorKind, Keep, MAX_DEPTH, MAX_LIGHT_SAMPLES, MAX_SAMPLES, Needs, Settings, ToneMap,
 };
 
 use super::arguments::{self, SampleId};
@@ -63,6 +63,25 @@ pub struct SceneArguments {
     /// Refuse files that require an extension that is not known
     #[arg(long)]
     pub strict: bool,
+}
+
+/// Whether anything is left out.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct KeepOptions {
+    /// Leave nothing out that the picture does not need: it is the same, bit for bit
+    #[arg(long)]
+    keep_all: bool,
+}
+
+impl KeepOptions {
+    /// What is kept though nothing reads it.
+    pub fn keep(self) -> Keep {
+        if self.keep_all {
+            Keep::EVERYTHING
+        } else {
+            Keep::NOTHING
+        }
+    }
 }
 
 /// What is seen.
@@ -147,6 +166,8 @@ pub struct WorkOptions {
     /// How the tree over the triangles is built; none tests every triangle
     #[arg(long, value_name = "BUILDER", default_value_t, value_parser = names::builder())]
     pub bvh: Builder,
+    #[command(flatten)]
+    pub keep: KeepOptions,
     /// Refuse to build a tree that would take more memory than this, like 500M or 4G [default: no limit]
     #[arg(long, value_name = "BYTES", value_parser = arguments::bytes)]
     pub max_memory: Option<u64>,
@@ -185,7 +206,7 @@ impl SceneArguments {
         SceneOptions {
             is_strict: self.strict,
             overrides: self.set.clone(),
-            camera: None,
+            ..SceneOptions::default()
         }
     }
 }
@@ -199,6 +220,14 @@ impl RenderOptions {
         if let Some(UVec2 { x, y }) = self.picture.size {
             let size = ("film.size".to_owned(), format!("[{x}, {y}]"));
             options.overrides.push(size);
+        }
+        options.keep = self.work.keep.keep();
+        let views = self.output.layers.iter().filter_map(|layer| layer.view());
+        options.layers = views.fold(Needs::default(), |all, view| all.and(view.needs()));
+        // Nor these: what neither picture nor layers read is left out at once.
+        if let Some(integrator) = self.picture.integrator {
+            let kind = format!("{:?}", integrator.name());
+            options.overrides.push(("integrator.kind".to_owned(), kind));
         }
         options
     }

@@ -7,8 +7,8 @@ use halfshade::film::{ErrorEstimate, Film, Rect, StoppedBy};
 use halfshade::import::{Imported, import};
 use halfshade::math::UVec2;
 use halfshade::output::exr::Window;
-use halfshade::prepare::{Prepared, prepare};
-use halfshade::render::{Event, Job, Limits, Significant, render_within, replay};
+use halfshade::prepare::{Prepared, prepare_keeping};
+use halfshade::render::{self, Event, Job, Limits, Significant, render_within, replay};
 use halfshade::scene::{Placed, Scene, Settings};
 
 use super::Failure;
@@ -16,6 +16,7 @@ use super::arguments::SampleId;
 use super::console::{Console, print};
 use super::interrupt::Interrupt;
 use super::layers::LayerValues;
+use super::left_out::LeftOutLine;
 use super::limits::limits;
 use super::memory;
 use super::metadata::metadata;
@@ -57,7 +58,11 @@ fn run_on_pool(
 
     let limit = options.work.max_memory;
     memory::check_build(&imported.scene, options.work.bvh, limit, options.console)?;
-    let Prepared { scene, warnings } = prepare(&imported.scene, options.work.bvh);
+    let Prepared {
+        scene,
+        warnings,
+        left_out,
+    } = prepare_keeping(&imported.scene, options.work.bvh, options.work.keep.keep());
     seconds.prepare = clock.step();
     options.console.warn_all(&warnings);
     let views = options.output.layers.iter().filter_map(|kind| kind.view());
@@ -71,6 +76,14 @@ fn run_on_pool(
     let Some(targets) = targets else {
         return replay_one(options, &job);
     };
+
+    let mut left_out = [imported.left_out.as_slice(), &left_out].concat();
+    left_out.extend(render::left_out(&job));
+    for entry in &left_out {
+        options
+            .console
+            .detail(format_args!("left out: {}", LeftOutLine(entry)));
+    }
 
     memory::check(&job, &options.output.layers)?;
     let film = watched(&job, &limits, interrupt, options.console);
@@ -91,6 +104,7 @@ fn run_on_pool(
         seed: settings.sampling.seed,
         seconds,
         error: film.error(),
+        left_out: &left_out,
     };
     finish(options, targets, &done)
 }

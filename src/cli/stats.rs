@@ -7,6 +7,7 @@ use halfshade::bench::processor_seconds;
 use halfshade::color::Rgb;
 use halfshade::film::{ErrorEstimate, Film, RayCounts, StoppedBy};
 use halfshade::output::{OutputError, write_whole};
+use halfshade::scene::LeftOut;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
@@ -14,7 +15,7 @@ use super::process;
 
 /// What scripts may rely on; more keys may come to stand beside these.
 #[derive(Debug, Serialize)]
-pub struct Stats {
+pub struct Stats<'a> {
     /// Pixels of the written picture, across and down.
     pub size: [u32; 2],
     pub samples: SampleStats,
@@ -30,8 +31,8 @@ pub struct Stats {
     pub error: Option<ErrorStats>,
     pub stopped_by: &'static str,
     pub rejected_samples: u64,
-    /// What the scene did not need: nothing is left out yet.
-    pub left_out: &'static [&'static str],
+    /// What the picture did not need.
+    pub left_out: &'a [LeftOut],
     /// Of the linear pixels: red, green, blue as little-endian singles, row by row.
     pub sha256: String,
 }
@@ -104,11 +105,12 @@ pub struct Done<'a> {
     pub seed: u64,
     pub seconds: Seconds,
     pub error: Option<ErrorEstimate>,
+    pub left_out: &'a [LeftOut],
 }
 
-impl Stats {
+impl<'a> Stats<'a> {
     /// The stats of a render, and of the process that did it.
-    pub fn of(done: &Done) -> Self {
+    pub fn of(done: &Done<'a>) -> Self {
         let (min, mean, max) = done.film.sample_counts();
         let RayCounts {
             camera,
@@ -132,7 +134,7 @@ impl Stats {
             error: done.error.map(ErrorStats::from),
             stopped_by: reason(done.film.stopped_by),
             rejected_samples: done.film.rejected,
-            left_out: &[],
+            left_out: done.left_out,
             sha256: digest(done.pixels),
         }
     }

@@ -5,12 +5,10 @@
 //! format is told by the first bytes, and by the name only where those do not say (TGA).
 
 use std::io::Cursor;
-use std::path::Path;
 
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 
 use super::budget::Budget;
-use super::files;
 use crate::texture::{Image, Pixels};
 
 /// Decoded bytes that any image may have, however small its file: 8192 × 8192 pixels.
@@ -19,20 +17,18 @@ const ALWAYS_ALLOWED_BYTES: u64 = 8192 * 8192 * 4;
 /// Decoded bytes per byte of the file that are allowed beyond [`ALWAYS_ALLOWED_BYTES`].
 const ALLOWED_EXPANSION: u64 = 64;
 
-/// Decodes the file at `path`, whose pixels are charged to `budget`.
+/// Decodes the bytes of a file called `name`, whose pixels are charged to `budget`.
 ///
 /// # Errors
-/// A sentence that names the path, where it cannot be read or decoded, or with the images before it
+/// A sentence that begins with `name`, where it cannot be decoded, or with the images before it
 /// holds more pixels than their files account for.
-pub fn read(path: &Path, budget: &Budget) -> Result<Image, String> {
-    let name = path.display().to_string();
-    let bytes = files::read(path).map_err(|error| format!("{name}: {error}"))?;
+pub fn decode_within(bytes: &[u8], name: &str, budget: &Budget) -> Result<Image, String> {
     budget.add_file(bytes.len() as u64);
-    let needed = decoded_bytes(&bytes, &name)?;
+    let needed = decoded_bytes(bytes, name)?;
     budget
         .take(needed)
         .map_err(|problem| format!("{name}: {problem}"))?;
-    decode(&bytes, &name)
+    decode(bytes, name)
 }
 
 /// Decodes the bytes of a file called `name`.
@@ -183,14 +179,11 @@ mod tests {
 
     #[test]
     fn images_together_cannot_take_more_than_their_files_account_for() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("plain.png");
         let bytes = encoded(&DynamicImage::new_luma8(1024, 1024), ImageFormat::Png);
-        std::fs::write(&path, &bytes).unwrap();
         let budget = Budget::for_pixels(0);
-        assert!(read(&path, &budget).is_ok());
+        assert!(decode_within(&bytes, "plain.png", &budget).is_ok());
         while budget.take(1 << 20).is_ok() {}
-        let error = read(&path, &budget).unwrap_err();
+        let error = decode_within(&bytes, "plain.png", &budget).unwrap_err();
         let expected = format!(
             "asks for far more memory than its {} bytes",
             2 * bytes.len()

@@ -5,11 +5,13 @@
 //! legal but not shown as its author meant it is a [`Warning`]. Nothing here prints.
 
 mod budget;
+mod census;
 mod files;
 mod gltf;
 mod images;
 mod obj;
 pub mod scene_file;
+mod undecoded;
 mod warning;
 
 use std::fmt;
@@ -18,8 +20,9 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use crate::scene::{Scene, Settings};
+use crate::scene::{LeftOut, Scene, Settings};
 pub use scene_file::{Defaults, SceneOptions};
+use undecoded::Undecoded;
 pub use warning::{Warning, WarningCode, Warnings};
 
 /// A scene as its file describes it, and what its author should know.
@@ -33,6 +36,17 @@ pub struct Imported {
     pub warnings: Warnings,
     /// The camera and the lights that a scene without any was given by [`import`].
     pub defaults: Option<Defaults>,
+    /// What the render does not need.
+    pub left_out: Vec<LeftOut>,
+}
+
+/// A model as its file describes it, with images that are not decoded yet.
+#[derive(Debug, Default)]
+struct Model {
+    scene: Scene,
+    undecoded: Vec<Undecoded>,
+    warnings: Warnings,
+    left_out: Vec<LeftOut>,
 }
 
 /// How to import.
@@ -40,6 +54,8 @@ pub struct Imported {
 pub struct ImportOptions {
     /// Whether a required extension that we lack is an error.
     pub is_strict: bool,
+    /// Whether meshes are read that nothing uses in the scene that is shown.
+    pub reads_unused_meshes: bool,
 }
 
 /// Why a file could not be imported: which file, where in it, what is wrong.
@@ -145,6 +161,17 @@ pub fn import(path: &Path, options: &SceneOptions) -> Result<Imported, ImportErr
 /// Where the file, or a file that it cannot do without, cannot be read or is not what its
 /// format demands.
 pub fn import_model(path: &Path, options: ImportOptions) -> Result<Imported, ImportError> {
+    let mut model = read_model(path, options)?;
+    undecoded::decode(&mut model.scene, &model.undecoded, &mut model.warnings);
+    Ok(Imported {
+        scene: model.scene,
+        warnings: model.warnings,
+        ..Imported::default()
+    })
+}
+
+/// As [`import_model`], without the pixels of its images.
+fn read_model(path: &Path, options: ImportOptions) -> Result<Model, ImportError> {
     match extension(path).as_str() {
         "gltf" | "glb" => gltf::import(path, options),
         "obj" => obj::import(path),

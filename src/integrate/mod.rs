@@ -22,6 +22,9 @@ pub trait Integrator: Sync {
     ///
     /// The rays that are traced for it are counted, and on request recorded, in `log`.
     fn radiance(&self, ray: &Ray, sampler: &Sampler, log: &mut RayLog) -> Rgb;
+
+    /// What [`Self::radiance`] is along every ray that meets nothing.
+    fn background(&self) -> Rgb;
 }
 
 /// The technique that `settings` ask for.

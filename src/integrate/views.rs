@@ -1,9 +1,13 @@
 //! Views of the first surface: normals, depth, base colour.
 
+use std::cell::OnceCell;
+
+use crate::bvh::Hit;
 use crate::color::Rgb;
 use crate::math::Ray;
 use crate::prepare::{PreparedScene, Surface};
 use crate::sampling::Sampler;
+use crate::scene::{IntegratorKind, Needs};
 
 use super::{Integrator, RayKind, RayLog, RayRecord};
 
@@ -18,11 +22,25 @@ pub enum ViewKind {
     Albedo,
 }
 
+impl ViewKind {
+    /// What it reads.
+    pub fn needs(self) -> Needs {
+        Needs::of(match self {
+            Self::Normal => IntegratorKind::Normal,
+            Self::Depth => IntegratorKind::Depth,
+            Self::Albedo => IntegratorKind::Albedo,
+        })
+    }
+}
+
 /// The first surface along a ray that can be seen.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct FirstSurface<'a> {
     scene: &'a PreparedScene<'a>,
-    seen: Option<(f32, Surface<'a>)>,
+    ray: Ray,
+    seen: Option<Hit>,
+    /// What is there, once something reads more of it than where it is.
+    surface: OnceCell<Surface<'a>>,
 }
 
 impl<'a> FirstSurface<'a> {
@@ -31,23 +49,35 @@ impl<'a> FirstSurface<'a> {
         let mut last = None;
         while let Some(hit) = scene.closest_hit(ray, last.as_ref()) {
             if scene.visibility(ray, &hit) > 0.0 {
-                let seen = Some((hit.t, scene.surface(ray, &hit)));
-                return Self { scene, seen };
+                return Self::of(scene, ray, Some(hit));
             }
             last = Some(hit);
         }
-        Self { scene, seen: None }
+        Self::of(scene, ray, None)
+    }
+
+    fn of(scene: &'a PreparedScene<'a>, ray: &Ray, seen: Option<Hit>) -> Self {
+        Self {
+            scene,
+            ray: *ray,
+            seen,
+            surface: OnceCell::new(),
+        }
     }
 
     /// What `kind` shows of it; normals are in `[-1, 1]`, and zero is where there is nothing.
     pub fn value(&self, kind: ViewKind) -> [f32; 3] {
-        let Some((t, surface)) = &self.seen else {
+        let Some(hit) = &self.seen else {
             return [0.0; 3];
         };
+        let surface = || {
+            self.surface
+                .get_or_init(|| self.scene.surface(&self.ray, hit))
+        };
         match kind {
-            ViewKind::Normal => surface.interaction.shading_normal.to_array(),
-            ViewKind::Depth => [self.scene.world_distance(*t); 3],
-            ViewKind::Albedo => surface.material.albedo(&surface.lookup).channels(),
+            ViewKind::Normal => surface().interaction.shading_normal.to_array(),
+            ViewKind::Depth => [self.scene.world_distance(hit.t); 3],
+            ViewKind::Albedo => surface().material.albedo(&surface().lookup).channels(),
         }
     }
 }
@@ -69,7 +99,7 @@ impl Integrator for View<'_> {
             kind: RayKind::Camera,
             depth: 0,
             ray: *ray,
-            t: first.seen.map(|(t, _)| t),
+            t: first.seen.map(|hit| hit.t),
             weight: Rgb::WHITE,
         });
         match self.kind {
@@ -77,5 +107,9 @@ impl Integrator for View<'_> {
             ViewKind::Normal if !value.is_black() => value.map(|c| 0.5 * c + 0.5),
             _ => value,
         }
+    }
+
+    fn background(&self) -> Rgb {
+        Rgb::BLACK
     }
 }

@@ -130,8 +130,8 @@ impl<'a> Whitted<'a> {
             return total;
         }
         let unmirrored = surface.bsdf.without_mirrored();
-        for (number, light) in self.scene.lights.iter().enumerate() {
-            let number = number as u32;
+        for &number in &self.scene.shining {
+            let light = &self.scene.lights[number as usize];
             let count = self.samples[number as usize];
             let bsdf = if light.is_visible() {
                 unmirrored
@@ -246,5 +246,9 @@ impl Integrator for Whitted<'_> {
             total += self.follow(&next, sampler, log, &mut pending);
         }
         total
+    }
+
+    fn background(&self) -> Rgb {
+        self.scene.background.radiance
     }
 }

@@ -22,7 +22,7 @@ pub use sphere::SphereLight;
 pub use spot::SpotLight;
 
 use crate::color::Rgb;
-use crate::math::{DVec3, Ray, UnitVec3, Vec2, Vec3};
+use crate::math::{Aabb, DVec3, Ray, UnitVec3, Vec2, Vec3};
 
 /// A light of any kind.
 #[derive(Clone, Copy, Debug)]
@@ -106,6 +106,18 @@ impl Light {
             Light::Sphere(light) => light.is_visible,
             Light::Point(_) | Light::Spot(_) | Light::Distant(_) => false,
         }
+    }
+
+    /// A box around what rays can meet of the light; `None` where that is nothing.
+    pub fn bounds(&self) -> Option<Aabb> {
+        let (center, reach) = match self {
+            Light::Disk(light) => (light.center, Vec3::splat(light.radius)),
+            Light::Rectangle(light) => (light.center, light.half_u.abs() + light.half_v.abs()),
+            Light::Sphere(light) => (light.center, Vec3::splat(light.radius)),
+            Light::Point(_) | Light::Spot(_) | Light::Distant(_) => return None,
+        };
+        let corners = [center - reach, center + reach];
+        self.is_visible().then(|| Aabb::of_points(corners))
     }
 
     /// Where `ray` meets the light itself, and the radiance it sees there.

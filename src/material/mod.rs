@@ -7,12 +7,14 @@ mod fresnel;
 mod lookup;
 mod metallic_roughness;
 mod phong;
+mod textures;
 
 pub use bsdf::{Bsdf, Glossy, Specular};
 pub use fresnel::{fresnel_dielectric, reflect, refract};
 pub use lookup::{Lookup, MAX_UV_SETS};
 pub use metallic_roughness::MetallicRoughness;
 pub use phong::Phong;
+pub use textures::TextureSlot;
 
 use crate::color::Rgb;
 use crate::texture::{TextureRef, TexturedRgb, TexturedScalar};

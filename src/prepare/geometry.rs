@@ -22,7 +22,8 @@ pub struct TreeGeometry {
 pub struct Traced {
     /// Which tree.
     pub tree: u32,
-    /// The tree's triangles below this number let no light pass wherever they are hit.
+    /// The tree's triangles below this number let no light pass wherever they are hit, and are not
+    /// asked.
     pub opaque_triangles: u32,
     /// What it is.
     pub placing: Placing,
@@ -100,12 +101,14 @@ pub struct Geometry {
 impl Geometry {
     /// Places and builds everything that `scene` holds.
     ///
-    /// At most `flatten_budget` triangles are added by flattening shared meshes.
+    /// At most `flatten_budget` triangles are added by flattening shared meshes. `asks_all` has all
+    /// surfaces asked for their opacity, opaque ones too.
     pub fn build(
         scene: &Scene,
         placement: &Placement,
         builder: Builder,
         flatten_budget: u64,
+        asks_all: bool,
     ) -> Self {
         let instanced = instanced_meshes(scene, flatten_budget);
         let (shared, mut single): (Vec<_>, Vec<_>) = scene
@@ -114,19 +117,19 @@ impl Geometry {
             .enumerate()
             .map(|(i, instance)| (i as u32, instance))
             .partition(|(_, instance)| instanced.binary_search(&instance.mesh).is_ok());
-        let is_opaque = |i: &Instance| scene.materials[i.material.0 as usize].is_opaque();
-        single.sort_by_key(|(_, instance)| !is_opaque(instance));
+        single.sort_by_key(|(_, instance)| !scene.is_opaque(instance));
+        let end = |opaque| if asks_all { 0 } else { opaque };
 
         let mut trees = Vec::new();
         let mut traced = Vec::new();
         if !single.is_empty() || shared.is_empty() {
             let (tree, parts) = flatten(scene, &single, placement);
-            let opaque = single.partition_point(|(_, instance)| is_opaque(instance));
+            let opaque = single.partition_point(|(_, instance)| scene.is_opaque(instance));
             let opaque = parts.get(opaque).map_or(u32::MAX, |p| p.first_triangle);
             trees.push(tree);
             traced.push(Traced {
                 tree: 0,
-                opaque_triangles: opaque,
+                opaque_triangles: end(opaque),
                 placing: Placing::Flattened(parts),
             });
         }
@@ -143,7 +146,11 @@ impl Geometry {
             let to_prepared = placement.after(&instance.transform);
             traced.push(Traced {
                 tree: first_mesh_tree + tree,
-                opaque_triangles: if is_opaque(instance) { u32::MAX } else { 0 },
+                opaque_triangles: end(if scene.is_opaque(instance) {
+                    u32::MAX
+                } else {
+                    0
+                }),
                 placing: Placing::Instanced {
                     instance: id,
                     to_prepared,

@@ -5,6 +5,7 @@
 //! failing.
 
 mod geometry;
+mod left_out;
 mod placement;
 mod surface;
 
@@ -15,8 +16,8 @@ use crate::bvh::{Builder, Hit};
 use crate::camera::Camera;
 use crate::import::{WarningCode, Warnings};
 use crate::light::Light;
-use crate::math::{DAffine3, DVec3, Mat3, Ray, Vec3, gamma};
-use crate::scene::{Background, Placed, Scene};
+use crate::math::{Aabb, DAffine3, DVec3, Mat3, Ray, Vec3, gamma};
+use crate::scene::{Background, Keep, LeftOut, Omission, Placed, Scene};
 
 use geometry::Geometry;
 pub use placement::Placement;
@@ -31,6 +32,10 @@ pub struct PreparedScene<'a> {
     pub placement: Placement,
     /// Lights in prepared coordinates, in file order.
     pub lights: Vec<Light>,
+    /// The numbers of those that shading points are lit by, in rising order.
+    pub shining: Vec<u32>,
+    /// A box around everything that rays can meet; `None` where that is not asked for.
+    pub bounds: Option<Aabb>,
     /// What rays bring back that leave the scene.
     pub background: Background,
     geometry: Geometry,
@@ -38,7 +43,7 @@ pub struct PreparedScene<'a> {
     normal_matrices: Vec<Mat3>,
     /// Per instance of the scene: -1 where its transform mirrors, else 1.
     orientation: Vec<f32>,
-    /// Whether any material lets light pass.
+    /// Whether blockers are asked for their opacity.
     has_transparency: bool,
 }
 
@@ -49,6 +54,8 @@ pub struct Prepared<'a> {
     pub scene: PreparedScene<'a>,
     /// What was repaired.
     pub warnings: Warnings,
+    /// What its rays do not need.
+    pub left_out: Vec<LeftOut>,
 }
 
 /// Triangles that flattening may add to a scene, beyond one copy of each mesh, before shared
@@ -65,21 +72,36 @@ pub fn prepare(scene: &Scene, builder: Builder) -> Prepared<'_> {
     prepare_within(scene, builder, FLATTEN_BUDGET)
 }
 
+/// As [`prepare`], but for what `keep` holds nothing is left out.
+pub fn prepare_keeping(scene: &Scene, builder: Builder, keep: Keep) -> Prepared<'_> {
+    prepare_all(scene, builder, FLATTEN_BUDGET, keep)
+}
+
 /// As [`prepare`], with a budget of its own in place of [`FLATTEN_BUDGET`]: with 0 every mesh that
 /// is used more than once is kept as instances.
 pub fn prepare_within(scene: &Scene, builder: Builder, flatten_budget: u64) -> Prepared<'_> {
-    let placement = Placement::of(scene);
-    let geometry = Geometry::build(scene, &placement, builder, flatten_budget);
+    prepare_all(scene, builder, flatten_budget, Keep::NOTHING)
+}
+
+fn prepare_all(scene: &Scene, builder: Builder, flatten_budget: u64, keep: Keep) -> Prepared<'_> {
+    let asks_all = keep.contains(Omission::Opacity);
+    let bounds = scene.bounds();
+    let placement = Placement::around(bounds);
+    let geometry = Geometry::build(scene, &placement, builder, flatten_budget, asks_all);
     let mut warnings = Warnings::default();
     warnings.add_many(
         WarningCode::NonFiniteVertex,
         "triangles with a vertex that is not a finite number were left out",
         geometry.non_finite_triangles,
     );
+    let lights: Vec<Light> = scene.lights.iter().map(|l| light(l, &placement)).collect();
     let prepared = PreparedScene {
         scene,
         placement,
-        lights: scene.lights.iter().map(|l| light(l, &placement)).collect(),
+        bounds: (!keep.contains(Omission::Background))
+            .then(|| left_out::meetable(bounds, &placement, &lights)),
+        lights,
+        shining: left_out::shining(scene, keep),
         background: scene.background,
         normal_matrices: scene
             .instances
@@ -91,13 +113,11 @@ pub fn prepare_within(scene: &Scene, builder: Builder, flatten_budget: u64) -> P
             .iter()
             .map(|i| i.transform.matrix3.determinant().signum() as f32)
             .collect(),
-        has_transparency: scene
-            .instances
-            .iter()
-            .any(|i| !scene.materials[i.material.0 as usize].is_opaque()),
+        has_transparency: asks_all || !scene.instances.iter().all(|i| scene.is_opaque(i)),
         geometry,
     };
     Prepared {
+        left_out: left_out::left_out(&prepared, keep),
         scene: prepared,
         warnings,
     }

@@ -1,7 +1,6 @@
 //! The coordinates that rays live in.
 
 use crate::math::{DAffine3, DVec3, Vec3};
-use crate::scene::Scene;
 
 /// From the world in double precision to the single precision that rays live in:
 /// `(world - origin) * scale`.
@@ -22,9 +21,9 @@ pub struct Placement {
 const NEAR_EXTENTS: f64 = 2.0;
 
 impl Placement {
-    /// The placement for what `scene` holds.
-    pub fn of(scene: &Scene) -> Self {
-        let Some((min, max)) = scene.bounds() else {
+    /// The placement for a scene between the corners `bounds` ([`crate::scene::Scene::bounds`]).
+    pub fn around(bounds: Option<(DVec3, DVec3)>) -> Self {
+        let Some((min, max)) = bounds else {
             return Self {
                 origin: DVec3::ZERO,
                 scale: 1.0,

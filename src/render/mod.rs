@@ -6,6 +6,7 @@
 //! the same bits, unless the clock ends it.
 
 mod allot;
+mod backdrop;
 mod course;
 mod forecast;
 mod replay;
@@ -23,9 +24,11 @@ use crate::integrate::{Integrator, ViewKind, integrator};
 use crate::prepare::PreparedScene;
 use crate::scene::Settings;
 
+pub use backdrop::left_out;
 pub use forecast::{Forecast, Significant};
 pub use replay::{Replay, ReplayedRay, replay};
 
+use backdrop::Foreground;
 use course::{Course, Step, aim_all, dealt, round};
 use forecast::{Bounds, Pace};
 use stop::Stop;
@@ -137,6 +140,7 @@ pub fn render_within(
         job,
         limits,
         integrator: integrator(job.scene, job.settings),
+        foreground: Foreground::of(job),
         cancel,
         observe,
         pace: Pace::start(),
@@ -154,6 +158,7 @@ struct Run<'a> {
     job: &'a Job<'a>,
     limits: &'a Limits,
     integrator: Box<dyn Integrator + 'a>,
+    foreground: Foreground,
     cancel: &'a AtomicBool,
     observe: &'a (dyn Fn(Event) + Sync),
     pace: Pace,
@@ -234,9 +239,10 @@ impl Run<'_> {
     fn pass(&mut self, deadline: Option<Instant>) -> Option<StoppedBy> {
         let stop = Stop::new(self.cancel, deadline);
         let (job, integrator, observe) = (self.job, self.integrator.as_ref(), self.observe);
+        let foreground = &self.foreground;
         let (done, total) = (&self.done, self.total.load(Ordering::Relaxed));
         self.tiles.par_iter_mut().for_each(|tile| {
-            let taken = tile.render(job, integrator, &stop);
+            let taken = tile.render(job, integrator, foreground, &stop);
             let done = done.fetch_add(taken, Ordering::Relaxed) + taken;
             let total = total.max(done);
             observe(Event::Progress(Progress { done, total }));

@@ -1,6 +1,7 @@
 //! A square of the film: its pixels take samples until each half has as many as it aims at.
 
 use super::Job;
+use super::backdrop::Foreground;
 use super::stop::Stop;
 use crate::camera::{CameraRays, film_position};
 use crate::film::{ErrorSums, Film, Pixel, RayCounts, Rect, RejectedSample, StoppedBy};
@@ -56,22 +57,37 @@ impl Tile {
     /// Takes the samples that its pixels lack, until `stop`; returns how many.
     ///
     /// The samples of a half are added in the order of their indices.
-    pub fn render(&mut self, job: &Job, integrator: &dyn Integrator, stop: &Stop) -> u64 {
+    pub fn render(
+        &mut self,
+        job: &Job,
+        integrator: &dyn Integrator,
+        foreground: &Foreground,
+        stop: &Stop,
+    ) -> u64 {
         let sets = job.settings.sampling.pattern.sets();
         let rays = job.camera.rays(job.settings.size);
         let mut log = RayLog::default();
         let mut done = 0;
         'pixels: for (i, pixel) in self.rect.pixels().enumerate() {
+            let is_beyond = foreground.is_beyond(pixel);
             for half in 0..2 {
                 for sample in self.taken[i][half]..self.goal[i][half] {
                     if stop.is_cancelled() || (done % SAMPLES_PER_LOOK == 0 && stop.is_late()) {
                         break 'pixels;
                     }
                     let index = sample * sets + half as u32;
-                    let (ray, sampler) = camera_sample(job, &rays, pixel, index);
-                    let value = integrator.radiance(&ray, &sampler, &mut log);
+                    let sample = (!is_beyond).then(|| camera_sample(job, &rays, pixel, index));
+                    let value = match &sample {
+                        Some((ray, sampler)) => integrator.radiance(ray, sampler, &mut log),
+                        None => {
+                            log.counts.camera += 1;
+                            integrator.background()
+                        }
+                    };
                     if self.pixels[i].add_sample(half, value) {
-                        self.add_layers(job, i, &ray);
+                        if let Some((ray, _)) = &sample {
+                            self.add_layers(job, i, ray);
+                        }
                     } else {
                         self.rejected += 1;
                         let sample = RejectedSample { pixel, index };

@@ -25,6 +25,29 @@ pub struct Mesh {
     used_vertices: OnceLock<Vec<u32>>,
 }
 
+/// Which attributes of vertices something reads.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Attributes {
+    /// Normals.
+    pub normals: bool,
+    /// Tangents.
+    pub tangents: bool,
+    /// How many sets of texture coordinates, from the first to the last that is read.
+    pub uv_sets: usize,
+    /// Colours.
+    pub colors: bool,
+}
+
+impl Attributes {
+    /// Adds those of `other`.
+    pub fn add(&mut self, other: Self) {
+        self.normals |= other.normals;
+        self.tangents |= other.tangents;
+        self.uv_sets = self.uv_sets.max(other.uv_sets);
+        self.colors |= other.colors;
+    }
+}
+
 /// Why arrays are not a mesh.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[non_exhaustive]
@@ -131,6 +154,21 @@ impl Mesh {
         Ok(self)
     }
 
+    /// Frees the attributes that `read` does not name; the bytes of normals, tangents, texture
+    /// coordinates and colours that this freed.
+    pub fn retain_attributes(&mut self, read: Attributes) -> [usize; 4] {
+        let unread_uvs = self.uv_sets.split_off(read.uv_sets.min(self.uv_sets.len()));
+        [
+            take_unless(read.normals, &mut self.normals),
+            take_unless(read.tangents, &mut self.tangents),
+            unread_uvs
+                .iter()
+                .map(|uvs| size_of_val(uvs.as_slice()))
+                .sum(),
+            take_unless(read.colors, &mut self.colors),
+        ]
+    }
+
     /// Vertex positions, in the mesh's own coordinates. May hold values that are not finite.
     pub fn positions(&self) -> &[Vec3] {
         &self.positions
@@ -187,6 +225,14 @@ impl Mesh {
                 .map(|uvs| size_of_val(uvs.as_slice()))
                 .sum::<usize>()
     }
+}
+
+/// Frees `values` unless they are `read`; their bytes.
+fn take_unless<T>(read: bool, values: &mut Vec<T>) -> usize {
+    if read {
+        return 0;
+    }
+    size_of_val(std::mem::take(values).as_slice())
 }
 
 #[cfg(test)]

@@ -4,10 +4,12 @@
 //! cameras are single precision about an anchor of their own in double precision, so that what
 //! is far from the origin keeps its shape.
 
+mod left_out;
 mod mesh;
 mod settings;
 
-pub use mesh::{Mesh, MeshError, MeshId};
+pub use left_out::{Keep, LeftOut, Needs, Omission};
+pub use mesh::{Attributes, Mesh, MeshError, MeshId};
 pub use settings::{
     Background, IntegratorKind, MAX_DEPTH, MAX_LIGHT_SAMPLES, MAX_PIXELS, MAX_SAMPLES, MAX_SIDE,
     Settings, ToneMap,
@@ -80,6 +82,11 @@ impl Scene {
     /// The mesh with this id.
     pub fn mesh(&self, id: MeshId) -> &Mesh {
         &self.meshes[id.0 as usize]
+    }
+
+    /// Whether no light passes `instance` anywhere.
+    pub fn is_opaque(&self, instance: &Instance) -> bool {
+        self.materials[instance.material.0 as usize].is_opaque()
     }
 
     /// World-space corners of the box around all finite vertices that triangles use; `None`

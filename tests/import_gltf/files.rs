@@ -157,7 +157,10 @@ fn required_extensions_that_we_lack_are_warnings_or_in_strict_mode_errors() {
 
     let folder = tempfile::tempdir().unwrap();
     write(folder.path(), "cat.glb", &doc.glb());
-    let strict = ImportOptions { is_strict: true };
+    let strict = ImportOptions {
+        is_strict: true,
+        ..ImportOptions::default()
+    };
     let error = import_model(&folder.path().join("cat.glb"), strict).unwrap_err();
     assert!(
         error

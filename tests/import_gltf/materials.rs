@@ -174,7 +174,10 @@ fn light_through_volumes_and_rough_surfaces_is_told_to_look_clear() {
         "the colour of a volume (KHR_materials_volume) is not supported",
     );
     assert!(glass(0.0, [1.0; 3]).import().unwrap().warnings.is_empty());
-    let strict = ImportOptions { is_strict: true };
+    let strict = ImportOptions {
+        is_strict: true,
+        ..ImportOptions::default()
+    };
     for (mut doc, extension, expected) in [rough, colored] {
         let told: Vec<_> = doc.import().unwrap().warnings.iter().collect();
         assert_eq!(told.len(), 1, "{told:?}");

@@ -108,15 +108,63 @@ impl<'a, 'b> Meshes<'a, 'b> {
         }
         let weights = entry.weights.as_deref().unwrap_or(&mesh.weights);
         let skin = self.skin(node, warnings)?;
+        let parts = self.parts(index, mesh, weights, skin.as_ref(), warnings)?;
+        self.looks.insert(look, Rc::clone(&parts));
+        Ok(parts)
+    }
+
+    /// Meshes of the document that no node asked for.
+    pub fn unused(&self) -> Vec<usize> {
+        let mut is_used = vec![false; self.accessors.document.meshes.len()];
+        for look in self.looks.keys() {
+            is_used[look.mesh] = true;
+        }
+        (0..is_used.len()).filter(|&i| !is_used[i]).collect()
+    }
+
+    /// Reads mesh `index` though no node asked for it; a broken one is a warning.
+    pub fn read_unused(&mut self, index: usize, warnings: &mut Warnings) {
+        let mesh: &'a MeshEntry = &self.accessors.document.meshes[index];
+        if let Err(broken) = self.parts(index, mesh, &mesh.weights, None, warnings) {
+            let message = format!("{}: {}; nothing uses it", broken.place, broken.problem);
+            warnings.add(WarningCode::BadAttribute, message);
+        }
+    }
+
+    /// Bytes that the vertices and corners of mesh `index` would take, as its accessors count them.
+    pub fn bytes_of(&self, index: usize) -> u64 {
+        let mesh = &self.accessors.document.meshes[index];
+        let primitives = mesh.primitives.iter();
+        let attributes = primitives.flat_map(|primitive| {
+            let corners = primitive.indices.map(|i| (i, size_of::<u32>()));
+            let vertices = primitive.attributes.iter();
+            let vertices = vertices.map(|(name, &i)| (i, bytes_of_attribute(name)));
+            vertices.chain(corners)
+        });
+        attributes
+            .map(|(accessor, bytes)| {
+                let count = self.accessors.count(accessor).unwrap_or(0);
+                count as u64 * bytes as u64
+            })
+            .sum()
+    }
+
+    /// The primitives of mesh `index`.
+    fn parts(
+        &mut self,
+        index: usize,
+        mesh: &'a MeshEntry,
+        weights: &[f32],
+        skin: Option<&(usize, Rc<Skin>)>,
+        warnings: &mut Warnings,
+    ) -> Result<Rc<[Part]>, Misplaced> {
         let mut parts = Vec::new();
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             let place = primitive_place(index, mesh, i);
-            let part = self.part(primitive, mesh, weights, skin.as_ref(), &place, warnings);
+            let part = self.part(primitive, mesh, weights, skin, &place, warnings);
             parts.extend(part.map_err(|problem| Misplaced { place, problem })?);
         }
-        let parts: Rc<[Part]> = parts.into();
-        self.looks.insert(look, Rc::clone(&parts));
-        Ok(parts)
+        Ok(parts.into())
     }
 
     /// The skin of a node, with its index; `None` where it has none that can be used.
@@ -248,6 +296,16 @@ impl<'a, 'b> Meshes<'a, 'b> {
 fn primitive_place(index: usize, mesh: &MeshEntry, primitive: usize) -> String {
     let mesh = place("mesh", index, mesh.name.as_deref());
     format!("{mesh}, primitive {primitive}")
+}
+
+/// Bytes of one vertex's value in memory.
+fn bytes_of_attribute(name: &str) -> usize {
+    match name {
+        "POSITION" | "NORMAL" => size_of::<[f32; 3]>(),
+        "TANGENT" | "COLOR_0" => size_of::<[f32; 4]>(),
+        _ if name.starts_with("TEXCOORD_") => size_of::<[f32; 2]>(),
+        _ => 0,
+    }
 }
 
 fn bits(weights: &[f32]) -> Vec<u32> {

@@ -41,10 +41,10 @@ use meshes::{Meshes, Part};
 use texture::Textures;
 
 use super::budget::Budget;
-use super::{ImportError, ImportOptions, Imported, Problem, WarningCode, Warnings, files};
+use super::{ImportError, ImportOptions, Model, Problem, WarningCode, Warnings, files};
 use crate::material::{Material, MaterialId, MetallicRoughness};
 use crate::math::DAffine3;
-use crate::scene::{Instance, Placed, Scene};
+use crate::scene::{Instance, LeftOut, Omission, Placed, Scene};
 
 /// Imports a `.gltf` or `.glb` file.
 ///
@@ -53,19 +53,20 @@ use crate::scene::{Instance, Placed, Scene};
 ///
 /// # Errors
 /// Where the file or one of its buffers cannot be read, or what would be shown is broken.
-pub fn import(path: &Path, options: ImportOptions) -> Result<Imported, ImportError> {
+pub fn import(path: &Path, options: ImportOptions) -> Result<Model, ImportError> {
     let file = files::read(path).map_err(|error| ImportError::io(path, error))?;
-    let mut imported = Imported::default();
-    imported.scene = read(path, &file, options, &mut imported.warnings)?;
-    Ok(imported)
+    let mut model = Model::default();
+    read(path, &file, options, &mut model)?;
+    Ok(model)
 }
 
 fn read(
     path: &Path,
     file: &[u8],
     options: ImportOptions,
-    warnings: &mut Warnings,
-) -> Result<Scene, ImportError> {
+    model: &mut Model,
+) -> Result<(), ImportError> {
+    let warnings = &mut model.warnings;
     let Container { json, binary } = container::split(file).map_err(in_file(path))?;
     let document: Document = serde_json::from_slice(json)
         .map_err(|error| ImportError::invalid(path, format!("not a glTF document: {error}")))?;
@@ -84,7 +85,8 @@ fn read(
     let textures = Textures::read(path, &document, &buffers, warnings);
     let materials = materials(&accessors, &textures, warnings).map_err(in_file(path))?;
     extensions::check_materials(&document, &materials, path, options, warnings)?;
-    let mut scene = Scene {
+    model.undecoded = textures.undecoded;
+    model.scene = Scene {
         materials,
         textures: textures.textures,
         images: textures.images,
@@ -96,12 +98,15 @@ fn read(
         accessors: &accessors,
         graph: &graph,
         meshes: Meshes::new(&accessors, &graph),
-        scene: &mut scene,
+        scene: &mut model.scene,
         warnings,
     };
     builder.add_shown_nodes()?;
-    scene.meshes = builder.meshes.meshes;
-    Ok(scene)
+    let left_out = builder.leave_out_unused_meshes(options);
+    let meshes = builder.meshes.meshes;
+    model.scene.meshes = meshes;
+    model.left_out.extend(left_out);
+    Ok(())
 }
 
 fn in_file(path: &Path) -> impl Fn(Problem) -> ImportError {
@@ -170,6 +175,28 @@ impl SceneBuilder<'_, '_> {
             self.add_mesh(node, world)?;
         }
         Ok(())
+    }
+
+    /// Meshes that no shown node uses are not read, unless `options` say so.
+    fn leave_out_unused_meshes(&mut self, options: ImportOptions) -> Option<LeftOut> {
+        let unused = self.meshes.unused();
+        if options.reads_unused_meshes {
+            for index in unused {
+                self.meshes.read_unused(index, self.warnings);
+            }
+            return None;
+        }
+        let bytes = unused.iter().map(|&index| self.meshes.bytes_of(index));
+        let bytes = bytes.sum();
+        (!unused.is_empty()).then(|| {
+            let what = format!(
+                "{} of {} meshes",
+                unused.len(),
+                self.accessors.document.meshes.len()
+            );
+            let why = "no node of the shown scene uses them";
+            LeftOut::new(Omission::Meshes, what, why, bytes)
+        })
     }
 
     /// Many nodes may share one light or camera of a long name.

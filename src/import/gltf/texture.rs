@@ -1,27 +1,28 @@
-//! Textures and the images that they use, decoded in parallel.
+//! Textures and the images that they use.
 //!
-//! An image is decoded once however many textures use it, and not at all if none does. What
-//! cannot be read or decoded is a warning: its materials go without it.
+//! An image is there once however many textures use it, and not at all if none does. It is decoded
+//! when it is known that something reads it ([`crate::import::undecoded`]); one without data is a
+//! warning: its materials go without it.
 
-use std::borrow::Cow;
 use std::path::Path;
 
-use rayon::prelude::*;
 use serde::Deserialize;
 
 use super::buffers::Buffers;
 use super::document::{Document, ImageEntry, Sampler, TextureEntry, place};
 use super::extensions::{BASISU, WEBP};
 use super::uri;
-use crate::import::budget::Budget;
-use crate::import::{Problem, WarningCode, Warnings, images};
+use crate::import::undecoded::{Source, Undecoded, placeholder};
+use crate::import::{Problem, WarningCode, Warnings};
 use crate::texture::{Filter, Image, ImageId, Texture, TextureId, Wrap};
 
 /// Textures of a document, as far as they could be read.
 #[derive(Debug, Default)]
 pub struct Textures {
-    /// Decoded images, in file order.
+    /// Images in use, in file order, without pixels.
     pub images: Vec<Image>,
+    /// Where those are.
+    pub undecoded: Vec<Undecoded>,
     /// Textures, in file order.
     pub textures: Vec<Texture>,
     /// Where each texture of the document is in `textures`; `None` where it could not be read.
@@ -35,7 +36,7 @@ struct WebpSource {
 }
 
 impl Textures {
-    /// Reads and decodes what the textures of the document at `path` use.
+    /// Reads the textures of the document at `path`, and finds their images.
     pub fn read(
         path: &Path,
         document: &Document,
@@ -50,7 +51,7 @@ impl Textures {
             is_used[image] = true;
         }
         let mut textures = Self::default();
-        let image_ids = textures.decode(path, document, buffers, &is_used, warnings);
+        let image_ids = textures.find_images(path, document, buffers, &is_used, warnings);
         for (index, source) in sources.into_iter().enumerate() {
             let image = source.and_then(|image| image_ids[image]);
             let id = image.map(|image| {
@@ -63,8 +64,8 @@ impl Textures {
         textures
     }
 
-    /// Decodes the images in use; the place of each in `self.images`.
-    fn decode(
+    /// Finds the images in use; the place of each in `self.images`.
+    fn find_images(
         &mut self,
         path: &Path,
         document: &Document,
@@ -73,74 +74,47 @@ impl Textures {
         warnings: &mut Warnings,
     ) -> Vec<Option<ImageId>> {
         let folder = path.parent().unwrap_or(Path::new(""));
-        let used: Vec<usize> = (0..is_used.len()).filter(|&i| is_used[i]).collect();
-        let encoded: Vec<_> = (used.par_iter())
-            .map(|&index| encoded_bytes(folder, document, buffers, index))
-            .collect();
-        let encoded = within_budget(document, &used, encoded);
-        let decoded: Vec<Result<Image, (WarningCode, String)>> = (used.par_iter().zip(encoded))
-            .map(|(&index, bytes)| {
-                let name = image_name(index, &document.images[index]);
-                images::decode(&bytes?, &name).map_err(|what| (WarningCode::BadImage, what))
-            })
-            .collect();
         let mut ids = vec![None; is_used.len()];
-        for (index, image) in used.into_iter().zip(decoded) {
-            match image {
-                Ok(image) => {
-                    ids[index] = Some(ImageId(self.images.len() as u32));
-                    self.images.push(image);
+        for index in (0..is_used.len()).filter(|&i| is_used[i]) {
+            let name = image_name(index, &document.images[index]);
+            match image_source(folder, document, buffers, index) {
+                Ok(source) => {
+                    let image = ImageId(self.images.len() as u32);
+                    ids[index] = Some(image);
+                    self.images.push(placeholder(name));
+                    self.undecoded.push(Undecoded {
+                        image,
+                        source,
+                        model: 0,
+                    });
                 }
-                Err((code, what)) => warnings.add(code, format!("{what}; it is left out")),
+                Err(problem) => {
+                    let message = format!("{name}: {problem}; it is left out");
+                    warnings.add(WarningCode::BadImage, message);
+                }
             }
         }
         ids
     }
 }
 
-type Encoded<'a> = Result<Cow<'a, [u8]>, (WarningCode, String)>;
-
-/// Keeps those images whose pixels, added up in file order, are in proportion to their files.
-fn within_budget<'a>(
-    document: &Document,
-    used: &[usize],
-    encoded: Vec<Encoded<'a>>,
-) -> Vec<Encoded<'a>> {
-    let file_bytes = |bytes: &Encoded| bytes.as_ref().map_or(0, |bytes| bytes.len() as u64);
-    let budget = Budget::for_pixels(encoded.iter().map(file_bytes).sum());
-    let check = |(&index, bytes): (&usize, Encoded<'a>)| {
-        let bytes = bytes?;
-        let name = image_name(index, &document.images[index]);
-        images::decoded_bytes(&bytes, &name)
-            .and_then(|needed| {
-                let problem = |problem: Problem| format!("{name}: {problem}");
-                budget.take(needed).map_err(problem)
-            })
-            .map_err(|what| (WarningCode::BadImage, what))?;
-        Ok(bytes)
-    };
-    used.iter().zip(encoded).map(check).collect()
-}
-
-fn encoded_bytes<'a>(
+/// Where the bytes of image `index` are.
+fn image_source(
     folder: &Path,
     document: &Document,
-    buffers: &'a Buffers,
+    buffers: &Buffers,
     index: usize,
-) -> Encoded<'a> {
+) -> Result<Source, Problem> {
     let image = &document.images[index];
-    let bytes = match (&image.uri, image.buffer_view) {
-        (Some(uri), _) => uri::read(folder, uri).map(Cow::Owned),
-        (None, Some(view)) => buffers.view(document, view).map(Cow::Borrowed),
+    match (&image.uri, image.buffer_view) {
+        (Some(uri), _) if uri::holds_data(uri) => uri::read(folder, uri).map(Source::Bytes),
+        (Some(uri), _) => uri::locate(folder, uri).map(Source::File),
+        (None, Some(view)) => {
+            let bytes = buffers.view(document, view)?;
+            Ok(Source::Bytes(bytes.to_vec()))
+        }
         (None, None) => Err(Problem::Invalid("has no data".into())),
-    };
-    bytes.map_err(|problem| {
-        let code = match problem {
-            Problem::Io(_) => WarningCode::MissingFile,
-            _ => WarningCode::BadImage,
-        };
-        (code, format!("{}: {problem}", image_name(index, image)))
-    })
+    }
 }
 
 fn image_name(index: usize, image: &ImageEntry) -> String {

@@ -29,6 +29,14 @@ pub fn read(folder: &Path, uri: &str) -> Result<Vec<u8>, Problem> {
     if let Some(data) = strip_scheme(uri, "data:") {
         return decode_data(data);
     }
+    Ok(files::read(&locate(folder, uri)?)?)
+}
+
+/// The file that `uri` names in a document that lies in `folder`.
+///
+/// # Errors
+/// Where it is an absolute path, or of a scheme.
+pub fn locate(folder: &Path, uri: &str) -> Result<PathBuf, Problem> {
     let decoded = percent_decode_str(uri)
         .decode_utf8()
         .map_err(|_| Problem::Invalid(format!("the file name {uri:?} is not UTF-8")))?;
@@ -36,10 +44,10 @@ pub fn read(folder: &Path, uri: &str) -> Result<Vec<u8>, Problem> {
     // Some exporters do not encode their file names, and some write those of Windows.
     let unencoded = local_path(folder, uri)?;
     let with_slashes = local_path(folder, &decoded.replace('\\', "/"))?;
-    let found = [&path, &unencoded, &with_slashes]
+    let found = [&unencoded, &with_slashes]
         .into_iter()
-        .find(|path| path.exists());
-    Ok(files::read(found.unwrap_or(&path))?)
+        .find(|other| !path.exists() && other.exists());
+    Ok(found.unwrap_or(&path).clone())
 }
 
 /// Whether `uri` holds the data itself.

@@ -33,7 +33,7 @@ use library::Libraries;
 use meshes::PartMesh;
 use mtl::{NEUTRAL_REFLECTANCE, Textures};
 
-use super::{ImportError, Imported, WarningCode, Warnings, files};
+use super::{ImportError, Model, WarningCode, Warnings, files};
 use crate::material::{Material, MaterialId, Surface};
 use crate::math::DAffine3;
 use crate::scene::{Instance, MeshId, Scene};
@@ -43,7 +43,7 @@ use crate::scene::{Instance, MeshId, Scene};
 /// # Errors
 /// Where it cannot be read, has a vertex or face that cannot be understood, or a face that uses
 /// a vertex that is not there.
-pub fn import(path: &Path) -> Result<Imported, ImportError> {
+pub fn import(path: &Path) -> Result<Model, ImportError> {
     let bytes = files::read(path).map_err(|error| ImportError::io(path, error))?;
     let (mut geometry, mut warnings) = reader::read(&bytes).map_err(|error| match error.line {
         Some(line) => ImportError::invalid_at(path, format!("line {line}"), error.what),
@@ -56,7 +56,8 @@ pub fn import(path: &Path) -> Result<Imported, ImportError> {
         .map_err(|error| ImportError::invalid(path, error.to_string()))?;
     let mut scene = Scene::default();
     let folder = path.parent().unwrap_or(Path::new(""));
-    let materials = add_materials(&mut scene, &geometry, folder, &mut warnings);
+    let mut textures = Textures::default();
+    let materials = add_materials(&mut scene, &geometry, folder, &mut textures, &mut warnings);
     for (index, part_mesh) in meshes.into_iter().enumerate() {
         let material = materials[index];
         warn_of_missing_uvs(
@@ -72,10 +73,13 @@ pub fn import(path: &Path) -> Result<Imported, ImportError> {
         });
         scene.meshes.push(part_mesh.mesh);
     }
-    Ok(Imported {
+    scene.images = textures.images;
+    scene.textures = textures.textures;
+    Ok(Model {
         scene,
+        undecoded: textures.undecoded,
         warnings,
-        ..Imported::default()
+        ..Model::default()
     })
 }
 
@@ -84,14 +88,14 @@ fn add_materials(
     scene: &mut Scene,
     geometry: &Geometry,
     folder: &Path,
+    textures: &mut Textures,
     warnings: &mut Warnings,
 ) -> Vec<MaterialId> {
     let libraries = Libraries::read(&geometry.libraries, folder, warnings);
-    let mut textures = Textures::default();
     for name in &geometry.materials {
         scene
             .materials
-            .push(libraries.material(name, &mut textures, warnings));
+            .push(libraries.material(name, textures, warnings));
     }
     let neutral = MaterialId(scene.materials.len() as u32);
     if geometry.parts.iter().any(|part| part.material.is_none()) {
@@ -99,8 +103,6 @@ fn add_materials(
             .materials
             .push(Material::matte("", NEUTRAL_REFLECTANCE));
     }
-    scene.images = textures.images;
-    scene.textures = textures.textures;
     let parts = geometry.parts.iter();
     parts
         .map(|part| part.material.map_or(neutral, MaterialId))

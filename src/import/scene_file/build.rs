@@ -12,8 +12,9 @@ use super::section::Section;
 use super::settings::BackgroundSection;
 use super::{light, material, settings};
 use crate::color::Rgb;
-use crate::import::{ImportError, ImportOptions, Imported, Warnings};
-use crate::scene::{Background, Scene, Settings};
+use crate::import::undecoded::{self, Undecoded};
+use crate::import::{ImportError, ImportOptions, Imported, Warnings, census};
+use crate::scene::{Background, LeftOut, Needs, Omission, Scene, Settings};
 
 const SECTIONS: &[&str] = &[
     "camera",
@@ -37,26 +38,37 @@ pub fn build(
     let camera = CameraSection::read(&root)?;
     let background = settings::background(&root)?;
     let mut warnings = Warnings::default();
-    let mut scene = scene(&root, options, &mut warnings)?;
+    let (mut scene, mut undecoded, mut left_out) = scene(&root, options, &mut warnings)?;
     let view = place_camera(&mut scene, camera, &settings, &source.path, options)?;
     let lights = light_up(&mut scene, &root);
     scene.background = surround(background, &lights);
     let was_changed = background.ambient.is_none() && !lights.is_empty();
     let changed = was_changed.then_some(&scene.background);
+    let defaults = defaults::report(view.as_ref(), changed, &lights);
+    let needs = options.layers.and(Needs::of(settings.integrator));
+    left_out.extend(census::leave_out(
+        &mut scene,
+        &mut undecoded,
+        needs,
+        options.keep,
+    ));
+    undecoded::decode(&mut scene, &undecoded, &mut warnings);
     Ok(Imported {
-        defaults: defaults::report(view.as_ref(), changed, &lights),
+        defaults,
         scene,
         settings,
         warnings,
+        left_out,
     })
 }
 
-/// Models, materials and lights; the cameras are those of the models.
+/// Models, materials and lights; the cameras are those of the models. And the images that are not
+/// decoded yet, and what the importers of models left out.
 fn scene(
     root: &Section,
     options: &SceneOptions,
     warnings: &mut Warnings,
-) -> Result<Scene, ImportError> {
+) -> Result<(Scene, Vec<Undecoded>, Vec<LeftOut>), ImportError> {
     let source = root.source;
     let materials = material::read_all(source, root.list("material")?, warnings)?;
     let mut scene = Scene {
@@ -70,6 +82,7 @@ fn scene(
         .collect::<Result<Vec<_>, _>>()?;
     let import_options = ImportOptions {
         is_strict: options.is_strict,
+        reads_unused_meshes: options.keep.contains(Omission::Meshes),
     };
     let mut models = Models::new(source, import_options, materials);
     for node in root.list("model")? {
@@ -78,7 +91,7 @@ fn scene(
     if root.value("light").is_some() {
         scene.lights = own_lights;
     }
-    Ok(scene)
+    Ok((scene, models.undecoded, models.left_out))
 }
 
 /// Makes the camera that was asked for the first of the scene; returns the default one, if it is that.

@@ -145,7 +145,7 @@ use std::path::Path;
 use super::{ImportError, Imported};
 use crate::camera::Camera;
 use crate::math::DVec3;
-use crate::scene::Placed;
+use crate::scene::{Keep, Needs, Placed};
 pub use defaults::Defaults;
 use document::{Entry, Kind, Node, Source};
 pub use nearest::suggestion;
@@ -160,6 +160,11 @@ pub struct SceneOptions {
     pub overrides: Vec<(String, String)>,
     /// The name of the camera to look through; `None` for what the file says.
     pub camera: Option<String>,
+    /// What layers beside the picture read.
+    pub layers: Needs,
+    /// What is kept though neither the integrator of the settings nor the layers read it: by
+    /// default everything, so that the scene can be rendered in any other way too.
+    pub keep: Keep,
 }
 
 /// The camera that a scene within the box `bounds` gets where it has none, for a picture of this

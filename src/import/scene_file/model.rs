@@ -11,13 +11,13 @@ use super::placement::Placement;
 use super::section::Section;
 use super::value::Value;
 use crate::camera::Camera;
+use crate::import::undecoded::Undecoded;
 use crate::import::{
-    ImportError, ImportOptions, Imported, NOT_A_MODEL, WarningCode, Warnings, import_model,
-    is_model,
+    ImportError, ImportOptions, Model, NOT_A_MODEL, WarningCode, Warnings, is_model, read_model,
 };
 use crate::light::Light;
 use crate::material::Material;
-use crate::scene::{Instance, Placed, Scene};
+use crate::scene::{Instance, LeftOut, Placed, Scene};
 
 const KEYS: &[&str] = &[
     "file",
@@ -43,6 +43,10 @@ pub struct Models<'a> {
     /// The materials of the scene file, which are the first of the scene.
     own_materials: Vec<Material>,
     loaded: BTreeMap<PathBuf, Loaded>,
+    /// Images of all models that are not decoded yet, in the order of the scene's.
+    pub undecoded: Vec<Undecoded>,
+    /// What the importers left out.
+    pub left_out: Vec<LeftOut>,
 }
 
 impl<'a> Models<'a> {
@@ -53,6 +57,8 @@ impl<'a> Models<'a> {
             options,
             own_materials,
             loaded: BTreeMap::new(),
+            undecoded: Vec::new(),
+            left_out: Vec::new(),
         }
     }
 
@@ -108,31 +114,38 @@ impl<'a> Models<'a> {
             return Err(file.invalid(format!("\"{name}\" is {NOT_A_MODEL}")));
         }
         let key = path.canonicalize().unwrap_or_else(|_| path.clone());
+        let number = self.loaded.len();
         match self.loaded.entry(key) {
             Entry::Occupied(entry) => Ok(entry.into_mut()),
             Entry::Vacant(entry) => {
-                let mut imported = import_model(&path, self.options)?;
-                for warning in imported.warnings.iter() {
+                let mut model = read_model(&path, self.options)?;
+                for warning in model.warnings.iter() {
                     let message = match is_named_here {
                         true => format!("{name}: {}", warning.message),
                         false => warning.message,
                     };
                     warnings.add_many(warning.code, message, warning.count);
                 }
-                Ok(entry.insert(Loaded::split(&mut imported, scene)))
+                for image in &mut model.undecoded {
+                    image.model = number;
+                }
+                let loaded = Loaded::split(&mut model, scene);
+                self.undecoded.append(&mut model.undecoded);
+                self.left_out.append(&mut model.left_out);
+                Ok(entry.insert(loaded))
             }
         }
     }
 }
 
 impl Loaded {
-    /// Moves the shared arrays of `imported` to `scene`, and keeps what is placed.
-    fn split(imported: &mut Imported, scene: &mut Scene) -> Self {
-        let mut model = std::mem::take(&mut imported.scene);
+    /// Moves the shared arrays of `read` to `scene`, and keeps what is placed.
+    fn split(read: &mut Model, scene: &mut Scene) -> Self {
+        let mut model = std::mem::take(&mut read.scene);
         Self {
             lights: std::mem::take(&mut model.lights),
             cameras: std::mem::take(&mut model.cameras),
-            instances: merge::append(scene, model),
+            instances: merge::append(scene, model, &mut read.undecoded),
         }
     }
 }

@@ -227,7 +227,7 @@ impl Lookup<'_> {
             .is_some_and(|m| m.channel.is_none());
         // The image of `map_d` is often that of `map_Kd`, with its alpha.
         if let Some(texture) = opacity.texture.filter(|_| is_open)
-            && has_alpha(self.textures.image_of(&texture))
+            && self.textures.is(&texture, has_alpha)
         {
             opacity.channel = 3;
         }
@@ -245,7 +245,7 @@ impl Lookup<'_> {
         }
         let texture = self.texture(&mtl.maps.bump)?;
         let map = mtl.maps.bump.as_ref()?;
-        let is_height = !looks_like_normals(self.textures.image_of(&texture));
+        let is_height = !self.textures.is(&texture, looks_like_normals);
         if !is_height {
             let message = format!(
                 "bump map {:?} has the colours of a normal map and is shown as one",

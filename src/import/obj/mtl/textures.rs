@@ -1,4 +1,5 @@
-//! Images that materials name, each read once.
+//! Images that materials name, each read once, and decoded here only where a material cannot be
+//! understood without its pixels.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -6,7 +7,8 @@ use std::path::{Path, PathBuf};
 use super::super::search::find;
 use super::map::Map;
 use crate::import::budget::Budget;
-use crate::import::{WarningCode, Warnings, images};
+use crate::import::undecoded::{Source, Undecoded, placeholder};
+use crate::import::{WarningCode, Warnings, files, images};
 use crate::math::{Affine2, Vec2};
 use crate::texture::{Filter, Image, ImageId, Pixels, Texture, TextureId, TextureRef, Wrap};
 
@@ -16,9 +18,11 @@ pub struct Textures {
     pub images: Vec<Image>,
     /// Their uses with different wrapping.
     pub textures: Vec<Texture>,
+    /// Those of the images that are not decoded yet, in their order.
+    pub undecoded: Vec<Undecoded>,
     /// By file, whatever name it goes by; `None` for those that could not be read.
     read: HashMap<PathBuf, Option<ImageId>>,
-    /// For the pixels of all images.
+    /// For the pixels of those that are decoded here.
     budget: Budget,
 }
 
@@ -28,6 +32,7 @@ impl Default for Textures {
         Self {
             images: Vec::new(),
             textures: Vec::new(),
+            undecoded: Vec::new(),
             read: HashMap::new(),
             budget: Budget::for_pixels(0),
         }
@@ -36,7 +41,7 @@ impl Default for Textures {
 
 impl Textures {
     /// The texture of `map`, whose file is looked for in `folders`. `None`, with a warning, where it is missing
-    /// or cannot be decoded: the material is then shown without it.
+    /// or no image: the material is then shown without it.
     pub fn get(
         &mut self,
         map: &Map,
@@ -67,10 +72,16 @@ impl Textures {
         if let Some(&known) = self.read.get(&key) {
             return known;
         }
-        let id = match images::read(path, &self.budget) {
-            Ok(image) => {
-                self.images.push(image);
-                Some(ImageId(self.images.len() as u32 - 1))
+        let id = match encoded(path) {
+            Ok(bytes) => {
+                let image = ImageId(self.images.len() as u32);
+                self.images.push(placeholder(path.display().to_string()));
+                self.undecoded.push(Undecoded {
+                    image,
+                    source: Source::Bytes(bytes),
+                    model: 0,
+                });
+                Some(image)
             }
             Err(message) => {
                 warnings.add(WarningCode::BadImage, message);
@@ -102,11 +113,28 @@ impl Textures {
         TextureId(index as u32)
     }
 
-    /// The image behind `texture`.
-    pub fn image_of(&self, texture: &TextureRef) -> &Image {
-        let image = self.textures[texture.texture.0 as usize].image;
-        &self.images[image.0 as usize]
+    /// Whether the image behind `texture`, which is decoded for it, is `so`; not where it
+    /// cannot be decoded, of which there is a warning when all others are.
+    pub fn is(&mut self, texture: &TextureRef, so: impl Fn(&Image) -> bool) -> bool {
+        let id = self.textures[texture.texture.0 as usize].image;
+        let image = &mut self.images[id.0 as usize];
+        if let Ok(place) = self.undecoded.binary_search_by_key(&id.0, |u| u.image.0)
+            && let Source::Bytes(bytes) = &self.undecoded[place].source
+            && let Ok(decoded) = images::decode_within(bytes, &image.name, &self.budget)
+        {
+            *image = decoded;
+            self.undecoded.remove(place);
+        }
+        so(image)
     }
+}
+
+/// The bytes of a file that begins as an image does.
+fn encoded(path: &Path) -> Result<Vec<u8>, String> {
+    let name = path.display().to_string();
+    let bytes = files::read(path).map_err(|error| format!("{name}: {error}"))?;
+    images::decoded_bytes(&bytes, &name)?;
+    Ok(bytes)
 }
 
 /// `-s` and `-o` for texture coordinates whose v grows downwards: with v' = 1 − v,
