@@ -7,6 +7,7 @@
 
 mod against;
 mod chart;
+mod choice;
 mod csv;
 mod digest;
 mod fit;
@@ -14,6 +15,7 @@ mod floor;
 mod measure;
 mod method;
 mod page;
+mod page_tables;
 mod point;
 mod reference;
 mod study;
