@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use halfshade::bvh::Builder;
 use halfshade::converge::{
-    About, Measured, Method, Plan, Reference, ReferenceReport, Seconds, Study, Subject, csv,
-    digest, measure, page, read_curves, svg,
+    About, Measured, Method, OtherPoint, Plan, Reference, ReferenceReport, Seconds, Study, Subject,
+    csv, digest, measure, page, read_curves, svg,
 };
 use halfshade::import::{Imported, SceneOptions, import};
 use halfshade::math::UVec2;
@@ -151,6 +151,7 @@ pub fn run(options: &ConvergeOptions) -> Result<(), Failure> {
 
 fn run_on_pool(options: &ConvergeOptions, folder: &Folder) -> Result<Study, Failure> {
     let mut clock = StepClock::start();
+    let others = against(options)?;
     let Imported {
         scene, settings, ..
     } = load(options)?;
@@ -179,6 +180,10 @@ fn run_on_pool(options: &ConvergeOptions, folder: &Folder) -> Result<Study, Fail
     let references = references(options, folder, &subject, &plan, &digest)?;
     seconds.reference = clock.step();
     let name = options.scene.scene.file_name().unwrap_or_default();
+    let [(_, reference), ..] = &references[..] else {
+        return Err(Failure::usage(COMMAND, "there is no method"));
+    };
+    let floor = reference.floors.relmse;
     let mut study = Study {
         scene: name.to_string_lossy().into_owned(),
         digest,
@@ -195,7 +200,7 @@ fn run_on_pool(options: &ConvergeOptions, folder: &Folder) -> Result<Study, Fail
         points: Vec::new(),
         slopes: Vec::new(),
         time_to_error: Vec::new(),
-        against: against(options, &references)?,
+        against: others.into_iter().map(|p| p.above(&floor)).collect(),
         left_out: Vec::new(),
     };
     let measured = measure(&subject, &references, &plan, |samples, measured| {
@@ -287,18 +292,11 @@ fn references(
         .collect()
 }
 
-fn against(
-    options: &ConvergeOptions,
-    references: &[(Target, Reference)],
-) -> Result<Vec<halfshade::converge::OtherPoint>, Failure> {
-    let mut points = Vec::new();
-    for path in &options.against {
-        for (_, reference) in references.iter().take(1) {
-            let floor = &reference.floors.relmse;
-            points.extend(read_curves(path, floor).map_err(Failure::job)?);
-        }
-    }
-    Ok(points)
+/// All that the files hold.
+fn against(options: &ConvergeOptions) -> Result<Vec<OtherPoint>, Failure> {
+    let files = options.against.iter().map(|path| read_curves(path));
+    let points: Result<Vec<_>, _> = files.collect();
+    Ok(points.map_err(Failure::job)?.concat())
 }
 
 /// What somebody needs to do it again, names and values.

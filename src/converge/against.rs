@@ -23,8 +23,18 @@ pub struct OtherPoint {
     pub seconds: f64,
     /// As the file says, the noise of the reference in it.
     pub measured_relmse: f64,
-    /// Without that noise; `None` where it drowns in it.
+    /// Without that noise, as [`Self::above`] puts it; `None` before, and where it drowns in it.
     pub relmse: Option<f64>,
+}
+
+impl OtherPoint {
+    /// The point with the noise of the reference taken off.
+    pub fn above(self, floor: &Floor) -> Self {
+        Self {
+            relmse: floor.subtracted(self.measured_relmse),
+            ..self
+        }
+    }
 }
 
 /// Why a file holds no curves.
@@ -43,20 +53,20 @@ enum Problem {
     Line { line: usize, what: String },
 }
 
-/// Reads the file at `path`; `floor` is that of the reference.
+/// Reads the file at `path`.
 ///
 /// # Errors
 /// Where it cannot be read, a column is missing, or a number is not positive.
-pub fn read_curves(path: &Path, floor: &Floor) -> Result<Vec<OtherPoint>, AgainstError> {
+pub fn read_curves(path: &Path) -> Result<Vec<OtherPoint>, AgainstError> {
     let text = fs::read_to_string(path).map_err(Problem::Io);
-    text.and_then(|text| parse(&text, floor))
+    text.and_then(|text| parse(&text))
         .map_err(|problem| AgainstError {
             path: path.to_owned(),
             problem,
         })
 }
 
-fn parse(text: &str, floor: &Floor) -> Result<Vec<OtherPoint>, Problem> {
+fn parse(text: &str) -> Result<Vec<OtherPoint>, Problem> {
     let lines = text.trim_start_matches('\u{feff}').lines().zip(1..);
     let mut lines = lines.filter(|(line, _)| !line.trim().is_empty() && !line.starts_with('#'));
     let wrong = |line: usize, what: String| Problem::Line { line, what };
@@ -83,12 +93,11 @@ fn parse(text: &str, floor: &Floor) -> Result<Vec<OtherPoint>, Problem> {
                         )
                     })
             };
-            let measured_relmse = positive(relmse)?;
             Ok(OtherPoint {
                 method: cells.get(method).copied().unwrap_or_default().to_owned(),
                 seconds: positive(seconds)?,
-                measured_relmse,
-                relmse: floor.subtracted(measured_relmse),
+                measured_relmse: positive(relmse)?,
+                relmse: None,
             })
         })
         .collect()
@@ -107,7 +116,8 @@ mod tests {
     #[test]
     fn columns_are_found_by_name() {
         let text = "# elsewhere\nseconds, spp ,method,relmse\n0.5,4,other,0.00101\n\n2,16,other,0.000015\n";
-        let points = parse(text, &FLOOR).unwrap();
+        let points = parse(text).unwrap();
+        let points: Vec<_> = points.into_iter().map(|p| p.above(&FLOOR)).collect();
         assert_eq!(points.len(), 2);
         assert_eq!(
             (points[0].method.as_str(), points[0].seconds),
@@ -128,7 +138,7 @@ mod tests {
             ),
             ("method,seconds,relmse\na,1", "line 2: relmse \"\""),
         ] {
-            let error = parse(text, &FLOOR).unwrap_err().to_string();
+            let error = parse(text).unwrap_err().to_string();
             assert!(error.contains(expected), "{error}");
         }
     }

@@ -74,7 +74,7 @@ fn point((x, relmse, error): (f64, Option<f64>, Option<f64>)) -> Option<Point> {
 }
 
 fn front(study: &Study) -> Series {
-    let points = pareto_front(&study.points);
+    let points = pareto_front(study);
     Series {
         name: "Pareto front".to_owned(),
         style: Style {

@@ -23,9 +23,9 @@ pub struct ErrorLaw {
 
 /// The exponents that a curve with a bias is tried with.
 const EXPONENTS: (f64, f64) = (0.1, 5.0);
-const EXPONENT_STEPS: usize = 490;
+const EXPONENT_STEPS: usize = 245;
 /// Steps in which the share of the bias is looked for before it is refined.
-const SHARE_STEPS: usize = 60;
+const SHARE_STEPS: usize = 40;
 /// Mean squared relative distances from a curve that are rounding and nothing else.
 const ROUNDING: f64 = 1e-20;
 
@@ -126,7 +126,7 @@ impl Trial {
 /// Minimax Search for a Maximum").
 fn least(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     const GOLDEN: f64 = 0.618_033_988_749_895;
-    for _ in 0..40 {
+    for _ in 0..25 {
         let (a, b) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
         if f(a) < f(b) {
             high = b;

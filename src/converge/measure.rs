@@ -65,7 +65,8 @@ pub struct Measured {
 }
 
 impl Subject<'_> {
-    /// A reference: `samples` scrambled Sobol samples in each pixel, two at least.
+    /// A reference: scrambled Sobol samples, two at least in each pixel, with one shadow ray per light and
+    /// shading point, since more of them change nothing but the time.
     ///
     /// # Errors
     /// Where the picture has no finite pixel.
@@ -73,7 +74,7 @@ impl Subject<'_> {
         let method = Method {
             pattern: Pattern::Sobol,
             target,
-            light_samples: None,
+            light_samples: Some(1),
             is_adaptive: false,
             samples: None,
         };

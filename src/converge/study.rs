@@ -186,19 +186,24 @@ impl Study {
 }
 
 /// The points that no other point beats in both time and error, by time: seconds and relMSE.
-pub fn pareto_front(points: &[Point]) -> Vec<(f64, f64)> {
-    let mut known: Vec<(f64, f64)> = points
-        .iter()
-        .filter_map(|p| Some((p.busy_seconds, p.relmse?)))
-        .collect();
-    known.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+pub fn pareto_front(study: &Study) -> Vec<(f64, f64)> {
+    let own = study.points.iter().map(|p| (p.busy_seconds, p.relmse));
+    let others = study.against.iter().map(|p| (p.seconds, p.relmse));
+    let known = own
+        .chain(others)
+        .filter_map(|(seconds, relmse)| Some((seconds, relmse?)));
+    unbeaten(known.collect())
+}
+
+fn unbeaten(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
     let mut least = f64::INFINITY;
-    known.retain(|&(_, error)| {
+    points.retain(|&(_, error)| {
         let is_better = error < least;
         least = least.min(error);
         is_better
     });
-    known
+    points
 }
 
 fn grouped<'a, T>(points: &'a [T], name: fn(&T) -> &String) -> Vec<(&'a str, Vec<&'a T>)> {
@@ -243,4 +248,35 @@ fn time_to_error(curves: &[(String, Vec<Step>)]) -> Vec<TimeToError> {
             goals: goals(curve),
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_another_point_beats_is_not_on_the_front() {
+        let points = vec![(3.0, 0.1), (1.0, 0.5), (2.0, 0.6), (1.0, 0.4), (4.0, 0.1)];
+        assert_eq!(unbeaten(points), [(1.0, 0.4), (3.0, 0.1)]);
+    }
+
+    #[test]
+    fn ratios_are_to_the_fastest() {
+        let curve = |name: &str, factor: f64| {
+            let step = |seconds: f64, relmse: f64| Step {
+                seconds: factor * seconds,
+                relmse: Some(relmse),
+                floor: 0.0,
+            };
+            (name.to_owned(), vec![step(1.0, 1.0), step(1e6, 1e-6)])
+        };
+        let times = time_to_error(&[curve("slow", 3.0), curve("fast", 1.0)]);
+        for (times, expected) in times.iter().zip([3.0, 1.0]) {
+            assert_eq!(times.goals.len(), GOALS.len());
+            for goal in &times.goals {
+                let ratio = goal.ratio.unwrap_or(f64::NAN);
+                assert!((ratio - expected).abs() < 1e-9, "{goal:?}");
+            }
+        }
+    }
 }
