@@ -37,6 +37,7 @@
 //! | [`output`] | pixels | files |
 //! | [`bench`] | triangles, rays, scenes | how long they take |
 //! | [`report`] | pictures, measurements | how far they are apart, error maps, fits, plots, pages |
+//! | [`converge`] | a scene, methods | error against run time |
 //!
 //! The program (`main.rs` and `cli/`) is thin: it parses arguments, runs one command, prints, and turns errors
 //! into exit statuses. The library never prints.
@@ -106,6 +107,8 @@ pub mod output;
 pub mod bench;
 
 pub mod report;
+
+pub mod converge;
 
 /// Compiles and runs the example of the README.
 #[cfg(doctest)]

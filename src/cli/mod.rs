@@ -8,6 +8,8 @@ mod bench;
 mod compare;
 mod comparison;
 mod console;
+mod converge;
+mod curve_tables;
 mod difference;
 mod failure;
 mod info;
@@ -15,6 +17,7 @@ mod interrupt;
 mod layers;
 mod left_out;
 mod limits;
+mod machine;
 mod measure;
 mod memory;
 mod metadata;
@@ -51,6 +54,7 @@ enum Command {
     Render(Box<options::RenderOptions>),
     Info(info::InfoOptions),
     Compare(compare::CompareOptions),
+    Converge(Box<converge::ConvergeOptions>),
     Bench(bench::BenchOptions),
 }
 
@@ -60,6 +64,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Render(arguments) => render::run(arguments),
         Command::Info(arguments) => info::run(arguments),
         Command::Compare(arguments) => compare::run(arguments),
+        Command::Converge(arguments) => converge::run(arguments),
         Command::Bench(arguments) => bench::run(arguments),
     }
 }

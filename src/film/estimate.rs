@@ -116,7 +116,7 @@ impl ErrorSums {
     }
 
     /// The estimate, without the share of the worst pixels; `None` without pixels.
-    fn estimate(&self) -> Option<ErrorEstimate> {
+    pub fn estimate(&self) -> Option<ErrorEstimate> {
         if self.pixels == 0 {
             return None;
         }

@@ -15,6 +15,7 @@ fn help_explains_with_an_example() {
         (&["render", "-h"], "--light-samples"),
         (&["info", "-h"], "--json"),
         (&["compare", "-h"], "--fail-above"),
+        (&["converge", "-h"], "--against"),
     ] {
         for help in ["-h", "--help"] {
             let arguments = [&arguments[..arguments.len() - 1], &[help]].concat();

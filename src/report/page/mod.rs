@@ -61,14 +61,23 @@ impl Shown {
 
 /// A whole page: `body` is HTML, `title` is not escaped yet.
 pub fn document(title: &str, body: &str) -> String {
+    document_with(title, body, "", "")
+}
+
+/// As [`document`], with more style and a script of its own after those that every page has.
+pub fn document_with(title: &str, body: &str, more_style: &str, more_script: &str) -> String {
     let title = escaped(title);
     let style = include_str!("page.css");
     let script = include_str!("page.js");
+    let more_script = match more_script {
+        "" => String::new(),
+        script => format!("<script>\n{script}</script>\n"),
+    };
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>{title}</title>\n<style>\n{style}</style>\n</head>\n<body>\n<main>\n\
-         <h1>{title}</h1>\n{body}</main>\n<script>\n{script}</script>\n</body>\n</html>\n"
+         <title>{title}</title>\n<style>\n{style}{more_style}</style>\n</head>\n<body>\n<main>\n\
+         <h1>{title}</h1>\n{body}</main>\n<script>\n{script}</script>\n{more_script}</body>\n</html>\n"
     )
 }
 
@@ -96,15 +105,22 @@ pub fn slider(left: &Shown, right: &Shown) -> String {
 /// # Errors
 /// Where there are no pixels.
 pub fn error_figure(title: &str, errors: &ErrorValues, scale: Scale) -> std::io::Result<String> {
-    let map = Shown::new(title, &colored(errors, scale))?;
-    Ok(format!(
+    Ok(map_figure(
+        &Shown::new(title, &colored(errors, scale))?,
+        scale,
+    ))
+}
+
+/// As [`error_figure`], of errors that are colours already.
+pub fn map_figure(map: &Shown, scale: Scale) -> String {
+    format!(
         "<figure class=\"map\" style=\"--width:{}px\">\n<figcaption>{}</figcaption>\n{}\n{}\
          </figure>\n",
         map.shown_width(),
-        escaped(title),
+        escaped(&map.label),
         map.image(),
         color_bar(scale)
-    ))
+    )
 }
 
 /// A table of text, not escaped yet, whose first column names the rows.
