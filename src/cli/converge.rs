@@ -166,6 +166,7 @@ fn run_on_pool(options: &ConvergeOptions, folder: &Folder) -> Result<Study, Fail
     let Prepared {
         scene: prepared,
         warnings,
+        left_out: _,
     } = prepare(&scene, options.bvh);
     options.console.warn_all(&warnings);
     seconds.prepare = clock.step();
