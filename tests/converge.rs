@@ -95,10 +95,12 @@ fn random_falls_with_the_root_and_the_others_faster() {
             assert!((own.unwrap() / relmse - 1.0).abs() < 0.3, "{point}");
         }
     }
-    for point in points(&study, "grid") {
-        assert!(point["variance"].as_f64().unwrap() < 1e-12, "{point}");
-        let parts = ["relmse", "bias_squared"].map(|key| point[key].as_f64().unwrap());
-        assert!((parts[0] / parts[1] - 1.0).abs() < 1e-3, "{point}");
+    // One sample in the middle of each pixel is the same for all seeds.
+    let grid = points(&study, "grid");
+    assert!(grid[0]["variance"].as_f64().unwrap() < 1e-12, "{}", grid[0]);
+    for point in grid {
+        let parts = ["bias_squared", "relmse"].map(|key| point[key].as_f64().unwrap());
+        assert!(parts[0] > 0.3 * parts[1], "{point}");
         assert!(point["estimated_relmse"].is_null());
     }
 }

@@ -7,7 +7,7 @@ use super::method::Method;
 use super::point::{Point, Repeats};
 use super::reference::{About, Reference};
 use super::views::View;
-use crate::bench::{Elapsed, Stopwatch};
+use crate::bench::{Elapsed, Stopwatch, Timing};
 use crate::camera::Camera;
 use crate::film::{Film, Rect};
 use crate::prepare::PreparedScene;
@@ -133,6 +133,12 @@ pub fn measure<E: From<PairError>>(
     Ok(run.measured)
 }
 
+/// Seconds without what else the machine did.
+fn busy(elapsed: Elapsed) -> f64 {
+    let time = Timing::of(&[elapsed]);
+    time.undisturbed(rayon::current_num_threads()).median
+}
+
 /// Numbers of samples, and which methods are measured with each.
 fn rounds(plan: &Plan) -> BTreeMap<u32, Vec<usize>> {
     let mut rounds: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
@@ -184,7 +190,7 @@ impl<'a> Run<'a> {
                 let method = self.plan.methods[*i];
                 let seed = first_seed.wrapping_add(repeat);
                 let (elapsed, film) = self.subject.render(&method, samples, seed);
-                self.seconds_per_sample[*i] = Some(elapsed.wall / f64::from(samples));
+                self.seconds_per_sample[*i] = Some(busy(elapsed) / f64::from(samples));
                 repeats.add(elapsed, &film)?;
             }
         }
@@ -203,7 +209,7 @@ impl<'a> Run<'a> {
         let method = self.plan.methods[i];
         let rate = match self.seconds_per_sample[i] {
             None if samples == 1 => 0.0,
-            None => self.subject.render(&method, 1, self.plan.seed).0.wall,
+            None => busy(self.subject.render(&method, 1, self.plan.seed).0),
             Some(rate) => rate,
         };
         let seconds = rate * f64::from(samples);
