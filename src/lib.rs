@@ -37,6 +37,7 @@
 //! | [`output`] | pixels | files |
 //! | [`bench`] | triangles, rays, scenes | how long they take |
 //! | [`report`] | pictures, measurements | how far they are apart, error maps, fits, plots, pages |
+//! | [`stress`] | extreme scenes | how far they are from their known answers |
 //!
 //! The program (`main.rs` and `cli/`) is thin: it parses arguments, runs one command, prints, and turns errors
 //! into exit statuses. The library never prints.
@@ -103,6 +104,8 @@ pub mod output;
 pub mod bench;
 
 pub mod report;
+
+pub mod stress;
 
 /// Compiles and runs the example of the README.
 #[cfg(doctest)]

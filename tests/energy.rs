@@ -3,82 +3,16 @@
 
 mod common;
 
-use std::f64::consts::{PI, TAU};
-
 use common::build::*;
 use common::floor::settings;
 use halfshade::color::Rgb;
 use halfshade::light::{DiskLight, Light};
-use halfshade::material::{Bsdf, Lookup, MAX_UV_SETS, Material};
+use halfshade::material::Material;
 use halfshade::math::{DVec3, UnitVec3, Vec2, Vec3};
 use halfshade::sampling::Pattern;
 use halfshade::scene::{Background, Scene, Settings};
-use halfshade::texture::{TexturedRgb, TexturedScalar};
-
-const ROUGHNESSES: [f32; 8] = [0.0, 0.01, 0.05, 0.15, 0.3, 0.5, 0.75, 1.0];
-
-fn coated(metallic: f32, roughness: f32, transmission: f32, index: f32) -> Material {
-    metallic_roughness(|m| {
-        m.metallic = TexturedScalar::constant(metallic);
-        m.roughness = TexturedScalar::constant(roughness);
-        m.transmission = TexturedScalar::constant(transmission);
-        m.index_of_refraction = index;
-    })
-}
-
-fn glossy(reflectance: f32, exponent: f32) -> Material {
-    phong(|p| {
-        p.specular = TexturedRgb::constant(Rgb::splat(reflectance));
-        p.exponent = TexturedScalar::constant(exponent);
-    })
-}
-
-/// Where nothing has a texture.
-fn bsdf(material: &Material) -> Bsdf {
-    material.bsdf(&Lookup {
-        textures: &[],
-        images: &[],
-        uvs: [Vec2::ZERO; MAX_UV_SETS],
-        color: [1.0; 4],
-    })
-}
-
-fn wo(degrees_above: f64) -> UnitVec3 {
-    let (sin, cos) = degrees_above.to_radians().sin_cos();
-    UnitVec3::from_normalized(DVec3::new(cos, 0.0, sin).as_vec3())
-}
-
-/// Share of the light that comes to `wo` under a sky of radiance 1, around the normal z: by
-/// rings around the mirror direction up to `reach` radians wide, the narrower the nearer to it.
-fn albedo_within(bsdf: &Bsdf, wo: UnitVec3, reach: f64) -> f64 {
-    const RINGS: u32 = 400;
-    const SPOKES: u32 = 64;
-    let mirror = DVec3::new(-f64::from(wo.x), -f64::from(wo.y), f64::from(wo.z)).normalize();
-    let (a, b) = mirror.any_orthonormal_pair();
-    let least = 1e-7f64;
-    let step = (reach / least).ln() / f64::from(RINGS);
-    let mut sum = 0.0;
-    for ring in 0..RINGS {
-        let angle = least * ((f64::from(ring) + 0.5) * step).exp();
-        let area = angle.sin() * angle * step * TAU / f64::from(SPOKES);
-        for spoke in 0..SPOKES {
-            let (sin, cos) = (TAU * (f64::from(spoke) + 0.5) / f64::from(SPOKES)).sin_cos();
-            let wi = mirror * angle.cos() + (a * cos + b * sin) * angle.sin();
-            if wi.z > 0.0 {
-                let wi = UnitVec3::normalize(wi.as_vec3()).unwrap();
-                let value = bsdf.eval(UnitVec3::Z, wo, wi).max_channel();
-                sum += f64::from(value) * f64::from(wi.z) * area;
-            }
-        }
-    }
-    sum
-}
-
-fn albedo(bsdf: &Bsdf, wo: UnitVec3) -> f64 {
-    albedo_within(bsdf, wo, PI)
-}
-
-const ELEVATIONS: [f64; 10] = [3.0, 6.0, 10.0, 15.0, 22.0, 30.0, 45.0, 60.0, 75.0, 90.0];
+use halfshade::stress::scattering::*;
+use halfshade::texture::TexturedScalar;
 
 /// L7: under a uniform sky nothing is brighter than the sky, and white is nearly as bright.
 #[test]

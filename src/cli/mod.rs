@@ -23,6 +23,7 @@ mod process;
 mod progress;
 mod render;
 mod stats;
+mod stress;
 mod table;
 mod targets;
 
@@ -50,6 +51,7 @@ enum Command {
     Info(info::InfoOptions),
     Compare(compare::CompareOptions),
     Bench(bench::BenchOptions),
+    Stress(stress::StressOptions),
 }
 
 /// Does what the arguments say.
@@ -59,5 +61,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Info(arguments) => info::run(arguments),
         Command::Compare(arguments) => compare::run(arguments),
         Command::Bench(arguments) => bench::run(arguments),
+        Command::Stress(arguments) => stress::run(arguments),
     }
 }
