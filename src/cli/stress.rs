@@ -1,14 +1,18 @@
 //! `halfshade stress`: extreme scenes against their known answers.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
+use halfshade::import::{SceneOptions, import};
+use halfshade::math::UVec2;
 use halfshade::output::{OutputProblem, write_whole};
+use halfshade::stress::invariance::examine;
 use halfshade::stress::{Case, Check, Effort, Report, Status, cases, page};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 
 use super::Failure;
+use super::arguments;
 use super::console::{Console, print, printable};
 use super::table::{Table, number};
 
@@ -18,18 +22,29 @@ Examples:
       all cases, within a minute
   halfshade stress G1 G5 L11 --full -o report
       three of them thoroughly, with report/stress.html
+  halfshade stress scenes/house.toml
+      a scene scaled, moved, turned, mirrored and shuffled against itself
 
 pass: within the bound; degraded: outside of it by a known shortfall; refused: there is no right
 answer; fail: wrong.
+A scene is not held against another tracer in double precision, and what the numbers in its files
+have lost already does not show.
+
 Exit status: 0 done, 1 a case failed, 2 the arguments are wrong.";
 
 /// Try extreme scenes whose answers are known beforehand
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct StressOptions {
-    /// Cases, G1 to G13 (geometry) and L1 to L13 (light) [default: all]
+    /// Cases, G1 to G13 (geometry) and L1 to L13 (light), or one scene (.toml, .gltf, .glb, .obj) [default: all cases]
     #[arg(value_name = "CASE")]
     cases: Vec<String>,
+    /// Pixels across and down, for a scene
+    #[arg(long, value_name = "WxH", default_value = "160x120", value_parser = arguments::size)]
+    size: UVec2,
+    /// Camera samples per pixel, for a scene
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=1024))]
+    samples: u32,
     /// More rays, seeds and scales
     #[arg(long)]
     full: bool,
@@ -45,15 +60,68 @@ pub struct StressOptions {
 
 /// Does what the options say.
 pub fn run(options: &StressOptions) -> Result<(), Failure> {
-    let chosen = chosen(&options.cases)?;
+    let scene = scene_path(&options.cases)?;
+    let chosen = match scene {
+        Some(_) => Vec::new(),
+        None => chosen(&options.cases)?,
+    };
     if let Some(folder) = &options.output {
         std::fs::create_dir_all(folder)
             .map_err(|error| Failure::job(format_args!("{}: {error}", folder.display())))?;
     }
-    let effort = if options.full { Effort::Full } else { Effort::Short };
-    let reports = run_cases(&chosen, effort, options.console);
+    let effort = if options.full {
+        Effort::Full
+    } else {
+        Effort::Short
+    };
+    let reports = match scene {
+        Some(path) => run_scene(path, options)?,
+        None => run_cases(&chosen, effort, options.console),
+    };
     show(options, &reports)?;
     verdict(&reports)
+}
+
+/// The scene, where one is given; no case has a name like a file's.
+fn scene_path(names: &[String]) -> Result<Option<&Path>, Failure> {
+    let is_file = |name: &String| name.contains(['.', '/', '\\']);
+    match names {
+        [name] if is_file(name) => Ok(Some(Path::new(name))),
+        _ => match names.iter().find(|name| is_file(name)) {
+            Some(name) => Err(Failure::usage(
+                "stress",
+                format_args!("{name}: a scene is tried alone, without cases and other scenes"),
+            )),
+            None => Ok(None),
+        },
+    }
+}
+
+/// Holds a scene against itself, as a small picture.
+fn run_scene(path: &Path, options: &StressOptions) -> Result<Vec<Report>, Failure> {
+    let UVec2 { x, y } = options.size;
+    let import_options = SceneOptions {
+        // Not later: a default camera frames the scene in this size.
+        overrides: vec![("film.size".to_owned(), format!("[{x}, {y}]"))],
+        ..SceneOptions::default()
+    };
+    let imported =
+        import(path, &import_options).map_err(|error| Failure::of_import("stress", &error))?;
+    options.console.warn_all(&imported.warnings);
+    let camera = imported.scene.cameras.first().ok_or_else(|| {
+        Failure::job(format_args!(
+            "{}: there is no camera to look through",
+            path.display()
+        ))
+    })?;
+    let mut settings = imported.settings.clone();
+    settings.sampling.samples = options.samples;
+    let command = format!(
+        "halfshade render {} --integrator whitted --size {x}x{y} --samples {}",
+        path.display(),
+        options.samples
+    );
+    Ok(examine(&imported.scene, camera, &settings, &command))
 }
 
 /// The cases of these names; all where there are none.
@@ -63,9 +131,13 @@ fn chosen(names: &[String]) -> Result<Vec<&'static Case>, Failure> {
     }
     let find = |name: &String| {
         let mut all = cases();
-        all.find(|case| case.id.eq_ignore_ascii_case(name)).ok_or_else(|| {
-            Failure::usage("stress", format_args!("there is no case {name}; there are G1 to G13 and L1 to L13"))
-        })
+        all.find(|case| case.id.eq_ignore_ascii_case(name))
+            .ok_or_else(|| {
+                Failure::usage(
+                    "stress",
+                    format_args!("there is no case {name}; there are G1 to G13 and L1 to L13"),
+                )
+            })
     };
     names.iter().map(find).collect()
 }
@@ -121,7 +193,11 @@ fn show(options: &StressOptions, reports: &[Report]) -> Result<(), Failure> {
 /// Fails where a case failed.
 fn verdict(reports: &[Report]) -> Result<(), Failure> {
     let is_failed = |report: &&Report| report.status() == Status::Fail;
-    let failed: Vec<&str> = reports.iter().filter(is_failed).map(|r| r.id.as_str()).collect();
+    let failed: Vec<&str> = reports
+        .iter()
+        .filter(is_failed)
+        .map(|r| r.id.as_str())
+        .collect();
     if failed.is_empty() {
         Ok(())
     } else {
@@ -156,6 +232,9 @@ impl<'a> Json<'a> {
     }
 }
 
+/// Columns of the longest name of a case.
+const WIDTH: usize = 9;
+
 /// The table, with the notes below it.
 fn text(reports: &[Report]) -> String {
     let mut table = Table::new(&["case", "measured", "bound", "verdict"]);
@@ -163,13 +242,13 @@ fn text(reports: &[Report]) -> String {
     for Report { id, checks, .. } in reports {
         for check in checks {
             table.row(vec![
-                format!("{id:<4} {}", check.tried),
+                format!("{id:<WIDTH$} {}", check.tried),
                 value(check.measured),
                 value(check.bound),
                 check.status.name().to_owned(),
             ]);
             if let Some(note) = &check.note {
-                notes += &format!("\n  {id:<4} {}: {note}", check.tried);
+                notes += &format!("\n  {id:<WIDTH$} {}: {note}", check.tried);
             }
         }
     }

@@ -71,6 +71,11 @@ pub fn prepare_within(scene: &Scene, builder: Builder, flatten_budget: u64) -> P
         "triangles with a vertex that is not a finite number were left out",
         geometry.non_finite_triangles,
     );
+    warnings.add_many(
+        WarningCode::DegenerateTriangle,
+        "triangles without area were left out",
+        geometry.flat_triangles,
+    );
     let prepared = PreparedScene {
         scene,
         placement,

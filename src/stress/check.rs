@@ -215,7 +215,11 @@ mod tests {
 
     #[test]
     fn a_shortfall_has_its_limit() {
-        let status = |measured| Check::at_most("", measured, 1.0).or_degraded(2.0, "").status;
+        let status = |measured| {
+            Check::at_most("", measured, 1.0)
+                .or_degraded(2.0, "")
+                .status
+        };
         assert_eq!(
             [0.5, 1.5, 2.5].map(status),
             [Status::Pass, Status::Degraded, Status::Fail]

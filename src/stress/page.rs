@@ -19,7 +19,10 @@ pub fn page(title: &str, reports: &[Report]) -> Result<String, PlotError> {
         .collect();
     let head = ["case", "tried", "measured", "bound", "verdict"];
     let cases: String = reports.iter().map(section).collect::<Result<_, _>>()?;
-    Ok(document(title, &format!("{}\n{cases}", table(&head, &rows))))
+    Ok(document(
+        title,
+        &format!("{}\n{cases}", table(&head, &rows)),
+    ))
 }
 
 fn row(report: &Report, check: &Check) -> Vec<String> {
@@ -72,21 +75,46 @@ fn figure(check: &Check) -> Result<String, PlotError> {
 }
 
 fn plot(sweep: &Sweep, bound: f64) -> Result<String, PlotError> {
-    let shown = |curve: &Curve| curve.points.iter().filter(|p| p.0 > 0.0 && p.1 > 0.0).count();
+    let shown = |curve: &Curve| {
+        curve
+            .points
+            .iter()
+            .filter(|p| p.0 > 0.0 && p.1 > 0.0)
+            .count()
+    };
     if sweep.curves.iter().map(shown).sum::<usize>() < 2 {
         let (x, y) = (escaped(sweep.x), escaped(sweep.y));
-        return Ok(format!("<p>Nothing to plot of <em>{y}</em> against <em>{x}</em>: 0 everywhere.</p>\n"));
+        return Ok(format!(
+            "<p>Nothing to plot of <em>{y}</em> against <em>{x}</em>: 0 everywhere.</p>\n"
+        ));
     }
-    let series = sweep.curves.iter().enumerate().map(|(number, curve)| Series {
-        name: if curve.name.is_empty() { sweep.y.to_owned() } else { curve.name.clone() },
-        style: Style {
-            color: number,
-            marker: [Marker::Disk, Marker::Ring, Marker::Triangle, Marker::Cross][number / 7 % 4],
-            ..Style::default()
-        },
-        points: curve.points.iter().map(|&(x, y)| Point { x, y, range: None }).collect(),
-    });
-    let first = sweep.curves.iter().flat_map(|c| &c.points).find(|p| p.0 > 0.0);
+    let series = sweep
+        .curves
+        .iter()
+        .enumerate()
+        .map(|(number, curve)| Series {
+            name: if curve.name.is_empty() {
+                sweep.y.to_owned()
+            } else {
+                curve.name.clone()
+            },
+            style: Style {
+                color: number,
+                marker: [Marker::Disk, Marker::Ring, Marker::Triangle, Marker::Cross]
+                    [number / 7 % 4],
+                ..Style::default()
+            },
+            points: curve
+                .points
+                .iter()
+                .map(|&(x, y)| Point { x, y, range: None })
+                .collect(),
+        });
+    let first = sweep
+        .curves
+        .iter()
+        .flat_map(|c| &c.points)
+        .find(|p| p.0 > 0.0);
     let guide = first.filter(|_| bound > 0.0).map(|&(x, _)| Guide {
         name: "bound".to_owned(),
         slope: 0.0,
@@ -99,5 +127,8 @@ fn plot(sweep: &Sweep, bound: f64) -> Result<String, PlotError> {
         series: series.collect(),
         guides: guide.into_iter().collect(),
     };
-    Ok(format!("<figure>\n{}\n</figure>\n", svg(&[chart], 1, PLOT)?))
+    Ok(format!(
+        "<figure>\n{}\n</figure>\n",
+        svg(&[chart], 1, PLOT)?
+    ))
 }

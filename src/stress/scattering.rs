@@ -49,18 +49,20 @@ pub fn wo(degrees_above: f64) -> UnitVec3 {
 /// Share of the light that comes to `wo` under a sky of radiance 1, around the normal z: by
 /// rings around the mirror direction up to `reach` radians wide, the narrower the nearer to it.
 pub fn albedo_within(bsdf: &Bsdf, wo: UnitVec3, reach: f64) -> f64 {
-    const RINGS: u32 = 400;
-    const SPOKES: u32 = 64;
+    quadrature(bsdf, wo, reach, 400, 64)
+}
+
+fn quadrature(bsdf: &Bsdf, wo: UnitVec3, reach: f64, rings: u32, spokes: u32) -> f64 {
     let mirror = DVec3::new(-f64::from(wo.x), -f64::from(wo.y), f64::from(wo.z)).normalize();
     let (a, b) = mirror.any_orthonormal_pair();
     let least = 1e-7f64;
-    let step = (reach / least).ln() / f64::from(RINGS);
+    let step = (reach / least).ln() / f64::from(rings);
     let mut sum = 0.0;
-    for ring in 0..RINGS {
+    for ring in 0..rings {
         let angle = least * ((f64::from(ring) + 0.5) * step).exp();
-        let area = angle.sin() * angle * step * TAU / f64::from(SPOKES);
-        for spoke in 0..SPOKES {
-            let (sin, cos) = (TAU * (f64::from(spoke) + 0.5) / f64::from(SPOKES)).sin_cos();
+        let area = angle.sin() * angle * step * TAU / f64::from(spokes);
+        for spoke in 0..spokes {
+            let (sin, cos) = (TAU * (f64::from(spoke) + 0.5) / f64::from(spokes)).sin_cos();
             let wi = mirror * angle.cos() + (a * cos + b * sin) * angle.sin();
             if wi.z > 0.0 {
                 let wi = UnitVec3::from_normalized(wi.as_vec3());
@@ -79,3 +81,10 @@ pub fn albedo(bsdf: &Bsdf, wo: UnitVec3) -> f64 {
 
 /// Degrees above the horizon.
 pub const ELEVATIONS: [f64; 10] = [3.0, 6.0, 10.0, 15.0, 22.0, 30.0, 45.0, 60.0, 75.0, 90.0];
+
+/// By how much the albedo is certainly above 1: beyond what half the rings and spokes would change.
+pub fn energy_made(bsdf: &Bsdf, wo: UnitVec3) -> f64 {
+    let fine = quadrature(bsdf, wo, PI, 400, 64);
+    let coarse = quadrature(bsdf, wo, PI, 200, 32);
+    (fine - (fine - coarse).abs() - 1.0).max(0.0)
+}

@@ -1,5 +1,5 @@
-//! The tracing core against independent answers: cases G1-G3, G10, G12 and G13 of the
-//! project's list of extreme scenes, and equality among builders, widths and thread counts.
+//! The tracing core against independent answers, beside what the numerical cases G1-G3, G10, G12
+//! and G13 try, and equality among builders, widths and thread counts.
 
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
@@ -9,5 +9,3 @@ mod degenerate;
 mod instances;
 mod meshes;
 mod reference;
-mod slivers;
-mod watertight;

@@ -36,10 +36,16 @@ pub fn run(effort: Effort) -> Vec<Check> {
         .collect();
     let sum = |count: fn(&Tally) -> u64| tallies.iter().map(count).sum();
     let lit: u64 = sum(|t| t.lit);
-    let empty = tallies.iter().filter(|t| t.lit * 4 < u64::from(rays)).count();
+    let empty = tallies
+        .iter()
+        .filter(|t| t.lit * 4 < u64::from(rays))
+        .count();
     let places = "scales 1e-6 1 1e6, moved by 0 10 1000 radii";
     vec![
-        Check::none(format!("{places}: wrongly shadowed of {lit} lit points"), sum(|t| t.shadowed)),
+        Check::none(
+            format!("{places}: wrongly shadowed of {lit} lit points"),
+            sum(|t| t.shadowed),
+        ),
         Check::none(format!("{places}: lit points inside"), sum(|t| t.leaked)),
         Check::none("bodies with fewer lit points than a quarter", empty as u64),
     ]

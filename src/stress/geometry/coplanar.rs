@@ -17,7 +17,10 @@ use crate::stress::{Check, Effort};
 
 /// Tries stacks of coincident triangles in trees and in pictures.
 pub fn run(effort: Effort) -> Vec<Check> {
-    vec![stacks(effort.pick(2_000, 50_000)), pictures(effort.pick(20, 1000))]
+    vec![
+        stacks(effort.pick(2_000, 50_000)),
+        pictures(effort.pick(20, 1000)),
+    ]
 }
 
 /// Rays on which trees differ, or on which another copy than the first nearest wins.
@@ -45,7 +48,10 @@ fn stacks(rays: usize) -> Check {
         }
         wrong += u64::from(is_wrong);
     }
-    Check::none(format!("50 copies of triangles, every tree: other winners in {hits} hits"), wrong)
+    Check::none(
+        format!("50 copies of triangles, every tree: other winners in {hits} hits"),
+        wrong,
+    )
 }
 
 /// Pixels of a stack of coloured squares that change with threads or trees.
@@ -56,10 +62,19 @@ fn pictures(layers: u32) -> Check {
         let material = Material::matte("layer", Rgb::new(share, 1.0 - share, 0.5));
         add_quad(&mut scene, Vec3::ZERO, Vec3::Z, Vec3::X, material);
     }
-    add_light(&mut scene, point_light(Vec3::new(1.0, 3.0, 1.0), 30.0, 0.2, 1));
+    add_light(
+        &mut scene,
+        point_light(Vec3::new(1.0, 3.0, 1.0), 30.0, 0.2, 1),
+    );
     let camera = look_at(Vec3::new(0.3, 2.0, 1.0), Vec3::ZERO);
     let settings = settings(Pattern::Sobol);
-    let render = |builder| bits(&picture_of(&prepare(&scene, builder).scene, &camera, &settings));
+    let render = |builder| {
+        bits(&picture_of(
+            &prepare(&scene, builder).scene,
+            &camera,
+            &settings,
+        ))
+    };
     let reference = render(Builder::default());
     let moved = |other: Vec<[u32; 3]>| reference.iter().zip(&other).filter(|(a, b)| a != b).count();
     let mut wrong: usize = Builder::ALL.into_iter().map(|b| moved(render(b))).sum();
@@ -69,6 +84,7 @@ fn pictures(layers: u32) -> Check {
             Err(_) => reference.len(),
         };
     }
-    let what = format!("{layers} coincident squares, 1 2 7 threads, every tree: pixels that differ");
+    let what =
+        format!("{layers} coincident squares, 1 2 7 threads, every tree: pixels that differ");
     Check::none(what, wrong as u64)
 }

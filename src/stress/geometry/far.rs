@@ -56,7 +56,11 @@ fn sweep(place: Place, name: &str, exponents: &[i32]) -> io::Result<Sweep> {
     };
     let points = exponents.par_iter().map(point).collect::<io::Result<_>>()?;
     let curves = vec![Curve::new(name, points)];
-    Ok(Sweep::several("shift, sizes of the scene", "relative RMSE against no shift", curves))
+    Ok(Sweep::several(
+        "shift, sizes of the scene",
+        "relative RMSE against no shift",
+        curves,
+    ))
 }
 
 /// A picture of a small town, moved by `shift` along x and against z, by way of real files.
@@ -102,7 +106,10 @@ fn town() -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
     quad(floor.map(|[x, z]| [x, 0.0, z]));
     for i in 0..9 {
         let (x, z) = (f64::from(i % 3) * 2.0 - 2.0, f64::from(i / 3) * 2.0 - 2.0);
-        let (w, h) = (0.375 + 0.0625 * f64::from(i % 4), 0.5 + 0.25 * f64::from(i % 5));
+        let (w, h) = (
+            0.375 + 0.0625 * f64::from(i % 4),
+            0.5 + 0.25 * f64::from(i % 5),
+        );
         let ring = [[-w, -w], [-w, w], [w, w], [w, -w]].map(|[a, b]| [x + a, z + b]);
         quad(ring.map(|[x, z]| [x, h, z]));
         for k in 0..4 {
@@ -115,19 +122,30 @@ fn town() -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
 
 fn write_obj(folder: &Path, [dx, dz]: [f64; 2]) -> io::Result<&'static str> {
     let (corners, triangles) = town();
-    let vertices = corners.iter().map(|[x, y, z]| format!("v {} {y} {}\n", x + dx, z + dz));
+    let vertices = corners
+        .iter()
+        .map(|[x, y, z]| format!("v {} {y} {}\n", x + dx, z + dz));
     let faces = triangles.iter().map(|t| {
         let [a, b, c] = t.map(|i| i + 1);
         format!("f {a} {b} {c}\n")
     });
-    fs::write(folder.join("town.obj"), vertices.chain(faces).collect::<String>())?;
+    fs::write(
+        folder.join("town.obj"),
+        vertices.chain(faces).collect::<String>(),
+    )?;
     Ok("town.obj")
 }
 
 fn write_gltf(folder: &Path, [dx, dz]: [f64; 2]) -> io::Result<&'static str> {
     let (corners, triangles) = town();
-    let positions = corners.as_flattened().iter().flat_map(|&x| (x as f32).to_le_bytes());
-    let indices = triangles.as_flattened().iter().flat_map(|i| i.to_le_bytes());
+    let positions = corners
+        .as_flattened()
+        .iter()
+        .flat_map(|&x| (x as f32).to_le_bytes());
+    let indices = triangles
+        .as_flattened()
+        .iter()
+        .flat_map(|i| i.to_le_bytes());
     let bytes: Vec<u8> = positions.chain(indices).collect();
     let split = corners.len() * 12;
     let document = serde_json::json!({

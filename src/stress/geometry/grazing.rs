@@ -33,7 +33,11 @@ pub fn run(effort: Effort) -> Vec<Check> {
         Curve::new("view", angles().map(view).collect()),
     ];
     let sweep = Sweep::several("angle above the plane, rad", "relative error", curves);
-    vec![Check::worst("irradiance I sin(θ)/d², 1e-1..1e-7 rad: relative error", 1e-4, sweep)]
+    vec![Check::worst(
+        "irradiance I sin(θ)/d², 1e-1..1e-7 rad: relative error",
+        1e-4,
+        sweep,
+    )]
 }
 
 fn off(got: f32, expected: f64) -> f64 {

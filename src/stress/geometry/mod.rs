@@ -16,7 +16,11 @@ use super::Case;
 
 /// All of them.
 pub const CASES: &[Case] = &[
-    case("G1", "watertight: rays at vertices and edges of closed meshes", watertight::run),
+    case(
+        "G1",
+        "watertight: rays at vertices and edges of closed meshes",
+        watertight::run,
+    ),
     case("G2", "needles and slivers", slivers::run),
     case("G3", "degenerate input", degenerate::run),
     case("G4", "scaled by a power of two", scaling::powers_of_two),
@@ -27,8 +31,16 @@ pub const CASES: &[Case] = &[
     case("G9", "grazing light and view", grazing::run),
     case("G10", "coplanar stack", coplanar::run),
     case("G11", "smooth normals on a coarse sphere", terminator::run),
-    case("G12", "rays along axes, on faces, with zeros of both signs", trees::along_axes),
-    case("G13", "trees against brute force in double precision", trees::against_brute_force),
+    case(
+        "G12",
+        "rays along axes, on faces, with zeros of both signs",
+        trees::along_axes,
+    ),
+    case(
+        "G13",
+        "trees against brute force in double precision",
+        trees::against_brute_force,
+    ),
 ];
 
 const fn case(

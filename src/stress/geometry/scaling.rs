@@ -42,7 +42,11 @@ pub fn powers_of_ten(effort: Effort) -> Vec<Check> {
         })
         .collect();
     let sweep = Sweep::of("scale", "relative RMSE against scale 1", points);
-    vec![Check::worst("everything in one scene, 1e-12..1e12: relative RMSE", 1e-5, sweep)]
+    vec![Check::worst(
+        "everything in one scene, 1e-12..1e12: relative RMSE",
+        1e-5,
+        sweep,
+    )]
 }
 
 fn film(scale: f32) -> Film {

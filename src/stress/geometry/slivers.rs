@@ -43,7 +43,11 @@ fn exact(count: u32) -> Vec<Check> {
     let sweep = Sweep::of("aspect ratio", "largest error of t, units of 2^-24", points);
     vec![
         Check::none(format!("slivers aimed at: misses of {tested} rays"), missed),
-        Check::worst("slivers of aspect 1 to 1e13: error of t / 2^-24", 8.0, sweep),
+        Check::worst(
+            "slivers of aspect 1 to 1e13: error of t / 2^-24",
+            8.0,
+            sweep,
+        ),
     ]
 }
 

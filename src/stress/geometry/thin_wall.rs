@@ -24,7 +24,9 @@ pub fn run(effort: Effort) -> Vec<Check> {
     for k in 1..=8 {
         let gap = 10f64.powi(-k);
         let scene = sheets(gap);
-        let largest = scene.bounds().map_or(HALF, |(min, max)| min.abs().max(max.abs()).max_element());
+        let largest = scene
+            .bounds()
+            .map_or(HALF, |(min, max)| min.abs().max(max.abs()).max_element());
         let [leaked, shadowed] = wrong(&scene, rays);
         if gap > RESOLVABLE * largest {
             resolvable[0].push((gap, leaked as f64));
@@ -37,11 +39,26 @@ pub fn run(effort: Effort) -> Vec<Check> {
     let [leaked, shadowed] = resolvable;
     let sweep = |name, y, points| Sweep::several("gap, widths", y, vec![Curve::new(name, points)]);
     vec![
-        Check::worst("gaps above 32u: leaks", 0.0, sweep("leaks", "points", leaked)),
-        Check::worst("gaps above 32u: shadows on the lit side", 0.0, sweep("shadows", "points", shadowed)),
-        Check::at_most("gaps below 32u of the largest coordinate: wrong points", below, 0.0)
-            .refused("unresolvable: the sheets' own corners are rounded by as much as the gap"),
-        Check::none("gaps below 32u: answers that are none", u64::from(!is_finite)),
+        Check::worst(
+            "gaps above 32u: leaks",
+            0.0,
+            sweep("leaks", "points", leaked),
+        ),
+        Check::worst(
+            "gaps above 32u: shadows on the lit side",
+            0.0,
+            sweep("shadows", "points", shadowed),
+        ),
+        Check::at_most(
+            "gaps below 32u of the largest coordinate: wrong points",
+            below,
+            0.0,
+        )
+        .refused("unresolvable: the sheets' own corners are rounded by as much as the gap"),
+        Check::none(
+            "gaps below 32u: answers that are none",
+            u64::from(!is_finite),
+        ),
     ]
 }
 
@@ -56,7 +73,12 @@ fn sheets(gap: f64) -> Scene {
     for depth in [0.0, gap] {
         let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
             .map(|(a, b)| (HALF * (a * u + b * v) - depth * normal()).as_vec3());
-        add_mesh(&mut scene, corners.into(), vec![[0, 1, 2], [0, 2, 3]], matte());
+        add_mesh(
+            &mut scene,
+            corners.into(),
+            vec![[0, 1, 2], [0, 2, 3]],
+            matte(),
+        );
     }
     add_light(&mut scene, point_light(light_place(), 1.0, 0.0, 1));
     scene

@@ -28,8 +28,9 @@ pub fn along_axes(effort: Effort) -> Vec<Check> {
             rays.push(Ray::new(Vec3::from([0, 1, 2].map(coordinate)), direction));
         }
     }
-    let (still, moving): (Vec<Ray>, Vec<Ray>) =
-        rays.into_iter().partition(|ray| ray.direction == Vec3::ZERO);
+    let (still, moving): (Vec<Ray>, Vec<Ray>) = rays
+        .into_iter()
+        .partition(|ray| ray.direction == Vec3::ZERO);
     let hits_of_nothing = mesh
         .trees()
         .iter()
@@ -37,7 +38,10 @@ pub fn along_axes(effort: Effort) -> Vec<Check> {
         .count();
     // Crossings on edges are not certain, so a margin is left to the reference.
     let mut checks = compare_all("through grids", vec![(mesh, moving, 1e-9)]);
-    checks.push(Check::none("rays without direction: hits", hits_of_nothing as u64));
+    checks.push(Check::none(
+        "rays without direction: hits",
+        hits_of_nothing as u64,
+    ));
     checks
 }
 
@@ -108,12 +112,18 @@ fn compare_all(what: &str, groups: Vec<Group>) -> Vec<Check> {
             }
         }
     }
-    let check = Check::none(format!("{what}: wrong answers beside {hits} hits"), wrong.len() as u64);
+    let check = Check::none(
+        format!("{what}: wrong answers beside {hits} hits"),
+        wrong.len() as u64,
+    );
     let check = match wrong.into_iter().next() {
         Some(first) => check.noted(first),
         None => check,
     };
-    vec![check, Check::at_most(format!("{what}: error of t / 2^-24"), error, 4.0)]
+    vec![
+        check,
+        Check::at_most(format!("{what}: error of t / 2^-24"), error, 4.0),
+    ]
 }
 
 /// What all of `trees` find; the name of one that finds something else.

@@ -26,7 +26,10 @@ pub fn run(effort: Effort) -> Vec<Check> {
     ];
     let boxes: Vec<_> = centers.map(|c| (box_with_t_junctions(), c)).into();
     let mut checks = vec![
-        escapes("spheres, scales 1e-6 1 1e6, moved by 0 1e3..1e6 sizes", &placed(3)),
+        escapes(
+            "spheres, scales 1e-6 1 1e6, moved by 0 1e3..1e6 sizes",
+            &placed(3),
+        ),
         escapes("flat and needle-shaped bodies", &flat),
         escapes("boxes with T-junctions", &boxes),
         fan(),
@@ -45,7 +48,9 @@ fn placed(levels: u32) -> Vec<(Triangles, Vec3)> {
     };
     let scales = [1e-6, 1.0, 1e6];
     let shifts = [0.0, 1e3, 1e4, 1e5, 1e6];
-    let places = scales.into_iter().flat_map(|s| shifts.map(|shift| (s, shift)));
+    let places = scales
+        .into_iter()
+        .flat_map(|s| shifts.map(|shift| (s, shift)));
     places.map(|(scale, shift)| at(scale, shift)).collect()
 }
 
@@ -75,7 +80,11 @@ fn escapes(what: &str, bodies: &[(Triangles, Vec3)]) -> Check {
             let directions = directions(mesh, *center, &mut Random(1));
             let wrong = |(name, tree): &(String, Bvh)| {
                 // Without a tree every triangle is looked at: nothing new, and slow.
-                let tried = if name.starts_with("none") { 0 } else { directions.len() };
+                let tried = if name.starts_with("none") {
+                    0
+                } else {
+                    directions.len()
+                };
                 let wrong = directions[..tried].iter().filter(|d| {
                     let ray = Ray::new(*center, **d);
                     tree.closest_hit(&ray).is_none() || !tree.any_hit(&ray)
@@ -139,7 +148,10 @@ fn fan() -> Check {
     let escaped = chosen
         .iter()
         .filter(|d| tree.closest_hit(&Ray::new(Vec3::ZERO, ***d)).is_none());
-    let what = format!("100,000 triangles at one vertex: escapes of {} rays", chosen.len());
+    let what = format!(
+        "100,000 triangles at one vertex: escapes of {} rays",
+        chosen.len()
+    );
     Check::none(what, escaped.count() as u64)
 }
 
@@ -149,7 +161,10 @@ fn many(rays: u64) -> Check {
     const BATCH: u64 = 1 << 16;
     let scales = [1e-6, 1e-3, 1.0, 1e3, 1e6f32];
     let shifts = [0.0, 1e3, 1e5, 1e6f32];
-    let places: Vec<_> = scales.iter().flat_map(|&s| shifts.map(|o| (s, o))).collect();
+    let places: Vec<_> = scales
+        .iter()
+        .flat_map(|&s| shifts.map(|o| (s, o)))
+        .collect();
     let escaped: u64 = places
         .iter()
         .map(|&(scale, shift)| {
@@ -173,6 +188,7 @@ fn many(rays: u64) -> Check {
         })
         .sum();
     let total = (rays / BATCH * BATCH) as usize * places.len();
-    let what = format!("edges and vertices of spheres, 5 scales, 4 offsets: escapes of {total} rays");
+    let what =
+        format!("edges and vertices of spheres, 5 scales, 4 offsets: escapes of {total} rays");
     Check::none(what, escaped)
 }

@@ -39,7 +39,11 @@ pub fn disks(effort: Effort) -> Vec<Check> {
         };
         (Light::Disk(light), disk_irradiance(r, h, a))
     });
-    vec![check("disks of radius 1e-6..1e15, on and off the axis", &lights, effort)]
+    vec![check(
+        "disks of radius 1e-6..1e15, on and off the axis",
+        &lights,
+        effort,
+    )]
 }
 
 /// L3, and from inside.
@@ -104,7 +108,11 @@ pub fn rectangles(effort: Effort) -> Vec<Check> {
             .map(|(u, v)| center.as_dvec3() + u * half_u.as_dvec3() + v * half_v.as_dvec3());
         // Whichever order of the edges makes it shine to the origin.
         let faces = half_u.cross(half_v).dot(center) < 0.0;
-        let (half_u, half_v) = if faces { (half_u, half_v) } else { (half_v, half_u) };
+        let (half_u, half_v) = if faces {
+            (half_u, half_v)
+        } else {
+            (half_v, half_u)
+        };
         let light = RectangleLight {
             center,
             half_u,
@@ -113,9 +121,16 @@ pub fn rectangles(effort: Effort) -> Vec<Check> {
             is_visible: true,
             samples: 1,
         };
-        (Light::Rectangle(light), polygon_irradiance(&corners, DVec3::Y))
+        (
+            Light::Rectangle(light),
+            polygon_irradiance(&corners, DVec3::Y),
+        )
     });
-    vec![check("rectangles and parallelograms of size 1e-15..1e15", &lights, effort)]
+    vec![check(
+        "rectangles and parallelograms of size 1e-15..1e15",
+        &lights,
+        effort,
+    )]
 }
 
 /// The largest error of the irradiance at the origin of a horizontal surface, in standard errors.

@@ -8,7 +8,9 @@ use crate::math::Vec3;
 use crate::sampling::Pattern;
 use crate::scene::{Background, Scene, Settings};
 use crate::stress::floor::settings;
-use crate::stress::scattering::{ELEVATIONS, ROUGHNESSES, albedo, bsdf, coated, glossy, wo};
+use crate::stress::scattering::{
+    ELEVATIONS, ROUGHNESSES, albedo, bsdf, coated, energy_made, glossy, wo,
+};
 use crate::stress::scenes::{add_box, add_quad, radiance};
 use crate::stress::{Check, Curve, Effort, Sweep};
 
@@ -18,11 +20,20 @@ const ROUNDING: f64 = 1e-5;
 /// Matte walls, rendered materials, and albedos.
 pub fn run(_: Effort) -> Vec<Check> {
     vec![
-        Check::at_most("matte walls of albedo 1 in radiance 1: error", matte(), ROUNDING)
-            .noted("whitted adds what comes from everywhere as one term; there is no path technique yet"),
+        Check::at_most(
+            "matte walls of albedo 1 in radiance 1: error",
+            matte(),
+            ROUNDING,
+        )
+        .noted(
+            "whitted adds what comes from everywhere as one term; there is no path technique yet",
+        ),
         rendered(),
         made("Phong, exponent 0..1e8: energy made", phong_albedos()),
-        made("metal, dielectric, glass, roughness 0..1: energy made", coat_albedos()),
+        made(
+            "metal, dielectric, glass, roughness 0..1: energy made",
+            coat_albedos(),
+        ),
         lost(),
     ]
 }
@@ -69,23 +80,38 @@ fn rendered() -> Check {
             });
             (f64::from(roughness), excess.into_iter().fold(0.0, f64::max))
         });
-        Curve::new(format!("metallic {metallic}, transmission {transmission}"), points.into())
+        Curve::new(
+            format!("metallic {metallic}, transmission {transmission}"),
+            points.into(),
+        )
     };
-    let curves = [(0.0, 0.0), (0.5, 0.0), (1.0, 0.0), (0.0, 0.5), (0.0, 1.0), (0.5, 0.5)].map(curve);
+    let curves = [
+        (0.0, 0.0),
+        (0.5, 0.0),
+        (1.0, 0.0),
+        (0.0, 0.5),
+        (0.0, 1.0),
+        (0.5, 0.5),
+    ]
+    .map(curve);
     let sweep = Sweep::several("roughness", "radiance above that of the sky", curves.into());
-    Check::worst("rendered coats under a sky of 1: radiance above 1", ROUNDING, sweep)
+    Check::worst(
+        "rendered coats under a sky of 1: radiance above 1",
+        ROUNDING,
+        sweep,
+    )
 }
 
-/// Largest albedo over all elevations.
-fn largest(material: &Material) -> f64 {
+/// The most that any view certainly gets above 1.
+fn most_made(material: &Material) -> f64 {
     let bsdf = bsdf(material);
-    let albedos = ELEVATIONS.map(|degrees| albedo(&bsdf, wo(degrees)));
-    albedos.into_iter().fold(0.0, f64::max)
+    let made = ELEVATIONS.map(|degrees| energy_made(&bsdf, wo(degrees)));
+    made.into_iter().fold(0.0, f64::max)
 }
 
 fn phong_albedos() -> Sweep {
     let exponents: Vec<f32> = (0..=16).map(|k| 10f32.powf(0.5 * k as f32)).collect();
-    let point = |&n: &f32| (f64::from(n), (largest(&glossy(1.0, n)) - 1.0).max(0.0));
+    let point = |&n: &f32| (f64::from(n), most_made(&glossy(1.0, n)));
     let points = exponents.par_iter().map(point).collect();
     Sweep::of("exponent", "energy made", points)
 }
@@ -95,7 +121,7 @@ fn coat_albedos() -> Sweep {
         [0.0, 0.5, 1.0].into_par_iter().map(move |metallic| {
             let points = ROUGHNESSES.map(|roughness| {
                 let coat = coated(metallic, roughness, 0.0, index);
-                (f64::from(roughness), (largest(&coat) - 1.0).max(0.0))
+                (f64::from(roughness), most_made(&coat))
             });
             Curve::new(format!("index {index}, metallic {metallic}"), points.into())
         })
@@ -115,7 +141,13 @@ fn lost() -> Check {
     });
     let sweep = Sweep::of("roughness", "energy lost", points.collect());
     let all = sweep.curves[0].points.iter();
-    let text: Vec<String> = all.map(|(r, loss)| format!("{r}: {:.1} %", 100.0 * loss)).collect();
-    Check::worst("white metal, 60 degrees: share of the energy lost", 1.0, sweep)
-        .noted(format!("lost by roughness: {}", text.join(", ")))
+    let text: Vec<String> = all
+        .map(|(r, loss)| format!("{r}: {:.1} %", 100.0 * loss))
+        .collect();
+    Check::worst(
+        "white metal, 60 degrees: share of the energy lost",
+        1.0,
+        sweep,
+    )
+    .noted(format!("lost by roughness: {}", text.join(", ")))
 }

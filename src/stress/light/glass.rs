@@ -25,8 +25,12 @@ pub fn run(effort: Effort) -> Vec<Check> {
             1e-4,
             slabs(steps),
         ),
-        Check::at_most("index 1+1e-7..100 in a furnace: energy lost or made", furnace(), 2e-3)
-            .noted("what the depth and the least weight cut off stays below 2e-3"),
+        Check::at_most(
+            "index 1+1e-7..100 in a furnace: energy lost or made",
+            furnace(),
+            2e-3,
+        )
+        .noted("what the depth and the least weight cut off stays below 2e-3"),
         total_reflection(steps),
         partial_reflection(steps),
     ]
@@ -44,7 +48,10 @@ fn invisible() -> u64 {
     let mut scene = plane();
     let (min, max) = (Vec3::new(-0.5, 0.5, -0.5), Vec3::new(0.5, 1.0, 0.5));
     add_box(&mut scene, min, max, matte());
-    add_light(&mut scene, point_light(Vec3::new(1.0, 4.0, 1.0), 40.0, 0.3, 2));
+    add_light(
+        &mut scene,
+        point_light(Vec3::new(1.0, 4.0, 1.0), 40.0, 0.3, 2),
+    );
     add_sphere(&mut scene, Vec3::new(0.2, 2.0, 1.5), 0.8, 12, clear(1.0));
     scene.background = Background {
         radiance: Rgb::new(0.2, 0.3, 0.5),
@@ -79,7 +86,11 @@ fn slabs(steps: u32) -> Sweep {
         let points = (0..=8 * steps).map(|i| through(n, f64::from(10 * i) / f64::from(steps)));
         Curve::new(format!("index {n}"), points.collect())
     });
-    Sweep::several("angle, degrees", "relative error of the light let through", curves.into())
+    Sweep::several(
+        "angle, degrees",
+        "relative error of the light let through",
+        curves.into(),
+    )
 }
 
 /// In a uniform surrounding glass is invisible: all energy comes out again.
@@ -95,7 +106,10 @@ fn furnace() -> f64 {
         let sum = radiance(&scene, Vec3::new(0.1, 0.2, 5.0), -Vec3::Z, &deep).g;
         f64::from((sum - 1.0).abs())
     };
-    [1.0 + 1e-7, 1.5, 2.4, 100.0].map(lost).into_iter().fold(0.0, f64::max)
+    [1.0 + 1e-7, 1.5, 2.4, 100.0]
+        .map(lost)
+        .into_iter()
+        .fold(0.0, f64::max)
 }
 
 /// A slab of index 1.5 in a bright surrounding, with a lamp inside of it where a ray from `eye`, mirrored by the
@@ -118,9 +132,18 @@ fn lamp_in_glass(degrees: f64, drop: f32, size: f32) -> f64 {
 /// Beyond the critical angle of 41.81 degrees a face shows the inside alone.
 fn total_reflection(steps: u32) -> Check {
     let angles = (0..=10 * steps).map(|i| 41.9 + 2.8 * f64::from(i) / f64::from(steps));
-    let points = angles.map(|degrees| (degrees, (lamp_in_glass(degrees, 0.0, 0.3) / 5.0 - 1.0).abs()));
+    let points = angles.map(|degrees| {
+        (
+            degrees,
+            (lamp_in_glass(degrees, 0.0, 0.3) / 5.0 - 1.0).abs(),
+        )
+    });
     let sweep = Sweep::of("angle, degrees", "relative error", points.collect());
-    Check::worst("total reflection, 41.9..70 degrees: relative error", 1e-5, sweep)
+    Check::worst(
+        "total reflection, 41.9..70 degrees: relative error",
+        1e-5,
+        sweep,
+    )
 }
 
 /// Below it, both sides by their shares.
@@ -133,5 +156,9 @@ fn partial_reflection(steps: u32) -> Check {
         (degrees, (got / expected - 1.0).abs())
     });
     let sweep = Sweep::of("angle, degrees", "relative error", points.collect());
-    Check::worst("reflection from inside, 0..40 degrees: relative error", 1e-4, sweep)
+    Check::worst(
+        "reflection from inside, 0..40 degrees: relative error",
+        1e-4,
+        sweep,
+    )
 }

@@ -38,7 +38,11 @@ pub fn run(effort: Effort) -> Vec<Check> {
         Curve::new(name, points)
     });
     let what = "visible share across the penumbra: error in standard errors";
-    let sweep = Sweep::several("place across the penumbra; 1.25 is under the edge", "standard errors", curves.into());
+    let sweep = Sweep::several(
+        "place across the penumbra; 1.25 is under the edge",
+        "standard errors",
+        curves.into(),
+    );
     vec![Check::worst(what, 4.0, sweep)]
 }
 

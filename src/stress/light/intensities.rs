@@ -31,7 +31,11 @@ pub fn run(_: Effort) -> Vec<Check> {
         Err(error) => Check::none("values up to 1e30 in an EXR", 1).noted(error.to_string()),
     };
     vec![
-        Check::worst("1e-30..1e30, and two 1e12 apart: relative error of the sum", 1e-6, sweep),
+        Check::worst(
+            "1e-30..1e30, and two 1e12 apart: relative error of the sum",
+            1e-6,
+            sweep,
+        ),
         changed.noted("EXR files are always in single precision, never in half"),
     ]
 }

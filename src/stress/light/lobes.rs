@@ -25,9 +25,19 @@ pub fn run(_: Effort) -> Vec<Check> {
     let pictures: u64 = materials.par_iter().map(bad_pixels).sum();
     let n = materials.len();
     vec![
-        Check::none(format!("{n} materials, index 0..100: values that are not finite"), values),
-        Check::none(format!("{n} materials: dropped samples of pictures"), pictures),
-        Check::worst("narrow lobes: share of light off the mirror direction", 1e-2, limits()),
+        Check::none(
+            format!("{n} materials, index 0..100: values that are not finite"),
+            values,
+        ),
+        Check::none(
+            format!("{n} materials: dropped samples of pictures"),
+            pictures,
+        ),
+        Check::worst(
+            "narrow lobes: share of light off the mirror direction",
+            1e-2,
+            limits(),
+        ),
     ]
 }
 
@@ -82,7 +92,10 @@ fn bad_pixels(material: &Material) -> u64 {
         radiance: Rgb::WHITE,
         ambient: Rgb::WHITE,
     };
-    add_light(&mut scene, point_light(Vec3::new(0.0, 3.0, 3.0), 10.0, 0.0, 1));
+    add_light(
+        &mut scene,
+        point_light(Vec3::new(0.0, 3.0, 3.0), 10.0, 0.0, 1),
+    );
     let once = settings(1, Pattern::Sobol);
     let film = picture(&scene, &look_at(Vec3::Z * 3.0, Vec3::ZERO), &once);
     let through = radiance(&scene, Vec3::Z * 3.0, -Vec3::Z, &once);
@@ -105,5 +118,9 @@ fn limits() -> Sweep {
         Curve::new("Phong, exponent 1e8", phong.into()),
         Curve::new("metal, roughness 0.01", coat.into()),
     ];
-    Sweep::several("degrees above the horizon", "share of light elsewhere", curves)
+    Sweep::several(
+        "degrees above the horizon",
+        "share of light elsewhere",
+        curves,
+    )
 }

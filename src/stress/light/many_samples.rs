@@ -21,9 +21,16 @@ pub fn run(effort: Effort) -> Vec<Check> {
     points.push((pixel.count() as f64, relative(&pixel)));
     let sweep = Sweep::of("samples", "relative error of the mean", points);
     vec![
-        Check::worst("a constant, 2^24 samples and more: relative error of the mean", 1e-7, sweep),
+        Check::worst(
+            "a constant, 2^24 samples and more: relative error of the mean",
+            1e-7,
+            sweep,
+        ),
         Check::at_most(
-            format!("a render of one pixel, 2^{} samples: relative error", effort.pick(18, 24)),
+            format!(
+                "a render of one pixel, 2^{} samples: relative error",
+                effort.pick(18, 24)
+            ),
             rendered(1 << effort.pick(18, 24)),
             1e-7,
         ),

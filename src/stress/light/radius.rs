@@ -23,11 +23,18 @@ use crate::stress::{Check, Effort, Sweep};
 pub fn vanishing(effort: Effort) -> Vec<Check> {
     let film = |radius, light_samples, samples| {
         let light = point_light(Vec3::new(1.0, 4.0, 1.0), 40.0, radius, light_samples);
-        picture(&shadow(light), &camera(), &settings(samples, Pattern::Sobol))
+        picture(
+            &shadow(light),
+            &camera(),
+            &settings(samples, Pattern::Sobol),
+        )
     };
     let hard = film(0.0, 1, 4);
     let asked = film(0.0, 16, 4);
-    let tiny: u64 = [20, 25, 30].map(|k| moved(&hard, &film(10f32.powi(-k), 1, 4))).iter().sum();
+    let tiny: u64 = [20, 25, 30]
+        .map(|k| moved(&hard, &film(10f32.powi(-k), 1, 4)))
+        .iter()
+        .sum();
     let samples = effort.pick(64, 1024);
     let hard_again = film(0.0, 1, samples);
     let points: Vec<(f64, f64)> = (0..=15)
@@ -35,22 +42,43 @@ pub fn vanishing(effort: Effort) -> Vec<Check> {
         .into_par_iter()
         .map(|k| {
             let radius = 10f32.powi(-k);
-            (f64::from(radius), relative_rmse(&hard_again, &film(radius, 1, samples)))
+            (
+                f64::from(radius),
+                relative_rmse(&hard_again, &film(radius, 1, samples)),
+            )
         })
         .collect();
     let rises = points.windows(2).filter(|w| w[1].1 > w[0].1).count();
     // A penumbra of 1e-7 is narrower than the distance between camera samples.
     let left = points[8..].iter().map(|p| p.1).fold(0.0, f64::max);
-    let sweep = Sweep::of("radius of the light", "relative RMSE against the hard shadow", points);
+    let sweep = Sweep::of(
+        "radius of the light",
+        "relative RMSE against the hard shadow",
+        points,
+    );
     vec![
-        Check::none("radius 0: pixels that differ from one hard shadow ray", moved(&hard, &asked)),
+        Check::none(
+            "radius 0: pixels that differ from one hard shadow ray",
+            moved(&hard, &asked),
+        ),
         Check::none(
             "radius 0, 16 samples asked for: rays beyond those of 1",
             asked.rays.total().abs_diff(hard.rays.total()),
         ),
-        Check::none("radius 1e-20..1e-30: pixels that differ from radius 0", tiny),
-        Check::none("radius 1..1e-15: steps away from the hard shadow", rises as u64).shown(sweep),
-        Check::at_most("radius 1e-8..1e-15: relative RMSE against radius 0", left, 0.0),
+        Check::none(
+            "radius 1e-20..1e-30: pixels that differ from radius 0",
+            tiny,
+        ),
+        Check::none(
+            "radius 1..1e-15: steps away from the hard shadow",
+            rises as u64,
+        )
+        .shown(sweep),
+        Check::at_most(
+            "radius 1e-8..1e-15: relative RMSE against radius 0",
+            left,
+            0.0,
+        ),
     ]
 }
 
@@ -89,7 +117,10 @@ pub fn huge(effort: Effort) -> Vec<Check> {
     });
     let all: Vec<_> = lights.into_iter().chain(inside).chain(points).collect();
     vec![
-        Check::none("radius 0.1..1e18, on and in the geometry: dropped samples", dropped),
+        Check::none(
+            "radius 0.1..1e18, on and in the geometry: dropped samples",
+            dropped,
+        ),
         closed_forms(&all, effort),
     ]
 }
