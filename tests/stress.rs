@@ -22,7 +22,7 @@ fn json(output: &Output) -> Vec<Value> {
 }
 
 /// Cases with a known shortfall, which the table says as well.
-const DEGRADED: &[&str] = &[];
+const DEGRADED: &[&str] = &["G11"];
 
 #[test]
 fn every_case_passes() {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use halfshade::import::{SceneOptions, import};
 use halfshade::math::UVec2;
-use halfshade::output::{OutputProblem, write_whole};
+use halfshade::output::write_whole;
 use halfshade::stress::invariance::examine;
 use halfshade::stress::{Case, Check, Effort, Report, Status, cases, page};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -184,7 +184,7 @@ fn show(options: &StressOptions, reports: &[Report]) -> Result<(), Failure> {
     let html = page("halfshade stress", reports).map_err(Failure::job)?;
     let path = folder.join("stress.html");
     write_whole(&path, |file| {
-        std::io::Write::write_all(file, html.as_bytes()).map_err(OutputProblem::from)
+        std::io::Write::write_all(file, html.as_bytes())
     })?;
     options.console.say(path.display());
     Ok(())

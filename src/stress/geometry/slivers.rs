@@ -7,7 +7,7 @@ use crate::stress::{Check, Effort, Sweep};
 
 /// Tries triangles with integer corners, whose exact hits are known, and others up to a width of 1e-40.
 pub fn run(effort: Effort) -> Vec<Check> {
-    let mut checks = exact(effort.pick(6_000, 60_000));
+    let mut checks = exact(effort.pick(4_000, 60_000));
     checks.push(unharmed(effort.pick(200, 1000)));
     checks
 }

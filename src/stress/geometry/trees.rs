@@ -50,11 +50,11 @@ pub fn against_brute_force(effort: Effort) -> Vec<Check> {
     let many = effort.pick(1, 20);
     let soups = [(1, 1), (5, 2), (16, 3), (17, 4), (300, 5), (3000, 6)].map(|(count, seed)| {
         let mesh = soup(count, seed);
-        let rays = mesh.rays(1000 * many, seed);
+        let rays = mesh.rays(500 * many, seed);
         (mesh, rays, 1e-9)
     });
     let with_rays = |mesh: Triangles, seed| {
-        let rays = mesh.rays(500 * many, seed);
+        let rays = mesh.rays(250 * many, seed);
         (mesh, rays, 1e-9)
     };
     let scales = [1e-30, 1e-12, 1.0, 1e12, 1e17];

@@ -63,7 +63,7 @@ fn off(scene: &Scene, light: &Light, x: f32, effort: Effort) -> f64 {
         _ => 3.0 * height / (x64 * x64 + height * height).powf(1.5),
     };
     let expected = share_beyond(f64::from(x * ABOVE / BELOW / RADIUS));
-    let values: Vec<f64> = (0..effort.pick(48, 400))
+    let values: Vec<f64> = (0..effort.pick(32, 400))
         .map(|seed| {
             let mut settings = settings(256, Pattern::Sobol);
             settings.sampling.seed = seed;
