@@ -10,7 +10,7 @@ use crate::bvh::Builder;
 use crate::import::{ImportOptions, import_model};
 use crate::math::{Ray, Vec3};
 use crate::prepare::prepare;
-use crate::stress::meshes::{Random, soup, sphere};
+use crate::stress::meshes::{Random, sphere};
 use crate::stress::{Check, Effort, Sweep};
 
 /// Builders whose trees are held to a depth: a median tree and one with splits by cost.

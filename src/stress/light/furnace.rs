@@ -18,7 +18,7 @@ use crate::stress::{Check, Curve, Effort, Sweep};
 const ROUNDING: f64 = 1e-5;
 
 /// Matte walls, rendered materials, and albedos.
-pub fn run(_: Effort) -> Vec<Check> {
+pub fn run(effort: Effort) -> Vec<Check> {
     vec![
         Check::at_most(
             "matte walls of albedo 1 in radiance 1: error",
@@ -29,10 +29,10 @@ pub fn run(_: Effort) -> Vec<Check> {
             "whitted adds what comes from everywhere as one term; there is no path technique yet",
         ),
         rendered(),
-        made("Phong, exponent 0..1e8: energy made", phong_albedos()),
+        made("Phong, exponent 0..1e8: energy made", phong_albedos(effort)),
         made(
             "metal, dielectric, glass, roughness 0..1: energy made",
-            coat_albedos(),
+            coat_albedos(effort),
         ),
         lost(),
     ]
@@ -103,25 +103,26 @@ fn rendered() -> Check {
 }
 
 /// The most that any view certainly gets above 1.
-fn most_made(material: &Material) -> f64 {
+fn most_made(material: &Material, effort: Effort) -> f64 {
     let bsdf = bsdf(material);
-    let made = ELEVATIONS.map(|degrees| energy_made(&bsdf, wo(degrees)));
-    made.into_iter().fold(0.0, f64::max)
+    let views = ELEVATIONS.iter().rev().step_by(effort.pick(3, 1));
+    let made = views.map(|&degrees| energy_made(&bsdf, wo(degrees)));
+    made.fold(0.0, f64::max)
 }
 
-fn phong_albedos() -> Sweep {
+fn phong_albedos(effort: Effort) -> Sweep {
     let exponents: Vec<f32> = (0..=16).map(|k| 10f32.powf(0.5 * k as f32)).collect();
-    let point = |&n: &f32| (f64::from(n), most_made(&glossy(1.0, n)));
+    let point = |&n: &f32| (f64::from(n), most_made(&glossy(1.0, n), effort));
     let points = exponents.par_iter().map(point).collect();
     Sweep::of("exponent", "energy made", points)
 }
 
-fn coat_albedos() -> Sweep {
+fn coat_albedos(effort: Effort) -> Sweep {
     let curves = [0.0, 1.0, 1.5, 100.0].into_par_iter().flat_map(|index| {
         [0.0, 0.5, 1.0].into_par_iter().map(move |metallic| {
             let points = ROUGHNESSES.map(|roughness| {
                 let coat = coated(metallic, roughness, 0.0, index);
-                (f64::from(roughness), most_made(&coat))
+                (f64::from(roughness), most_made(&coat, effort))
             });
             Curve::new(format!("index {index}, metallic {metallic}"), points.into())
         })
@@ -142,7 +143,7 @@ fn lost() -> Check {
     let sweep = Sweep::of("roughness", "energy lost", points.collect());
     let all = sweep.curves[0].points.iter();
     let text: Vec<String> = all
-        .map(|(r, loss)| format!("{r}: {:.1} %", 100.0 * loss))
+        .map(|(r, loss)| format!("{r:.2}: {:.1} %", 100.0 * loss))
         .collect();
     Check::worst(
         "white metal, 60 degrees: share of the energy lost",
