@@ -38,6 +38,7 @@
 //! | [`bench`] | triangles, rays, scenes | how long they take |
 //! | [`report`] | pictures, measurements | how far they are apart, error maps, fits, plots, pages |
 //! | [`converge`] | a scene, methods | error against run time |
+//! | [`stress`] | extreme scenes | how far they are from their known answers |
 //!
 //! The program (`main.rs` and `cli/`) is thin: it parses arguments, runs one command, prints, and turns errors
 //! into exit statuses. The library never prints.
@@ -109,6 +110,8 @@ pub mod bench;
 pub mod report;
 
 pub mod converge;
+
+pub mod stress;
 
 /// Compiles and runs the example of the README.
 #[cfg(doctest)]

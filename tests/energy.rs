@@ -1,118 +1,18 @@
-//! No material gives back more light than it gets, and none fails at the ends of its parameters.
+//! No material gives back more light than it gets, beside what the numerical cases L7 and L10 try.
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 mod common;
-
-use std::f64::consts::{PI, TAU};
 
 use common::build::*;
 use common::floor::settings;
 use halfshade::color::Rgb;
 use halfshade::light::{DiskLight, Light};
-use halfshade::material::{Bsdf, Lookup, MAX_UV_SETS, Material};
-use halfshade::math::{DVec3, UnitVec3, Vec2, Vec3};
+use halfshade::material::Material;
+use halfshade::math::{DVec3, UnitVec3, Vec3};
 use halfshade::sampling::Pattern;
 use halfshade::scene::{Background, Scene, Settings};
-use halfshade::texture::{TexturedRgb, TexturedScalar};
-
-const ROUGHNESSES: [f32; 8] = [0.0, 0.01, 0.05, 0.15, 0.3, 0.5, 0.75, 1.0];
-
-fn coated(metallic: f32, roughness: f32, transmission: f32, index: f32) -> Material {
-    metallic_roughness(|m| {
-        m.metallic = TexturedScalar::constant(metallic);
-        m.roughness = TexturedScalar::constant(roughness);
-        m.transmission = TexturedScalar::constant(transmission);
-        m.index_of_refraction = index;
-    })
-}
-
-fn glossy(reflectance: f32, exponent: f32) -> Material {
-    phong(|p| {
-        p.specular = TexturedRgb::constant(Rgb::splat(reflectance));
-        p.exponent = TexturedScalar::constant(exponent);
-    })
-}
-
-/// Where nothing has a texture.
-fn bsdf(material: &Material) -> Bsdf {
-    material.bsdf(&Lookup {
-        textures: &[],
-        images: &[],
-        uvs: [Vec2::ZERO; MAX_UV_SETS],
-        color: [1.0; 4],
-    })
-}
-
-fn wo(degrees_above: f64) -> UnitVec3 {
-    let (sin, cos) = degrees_above.to_radians().sin_cos();
-    UnitVec3::from_normalized(DVec3::new(cos, 0.0, sin).as_vec3())
-}
-
-/// Share of the light that comes to `wo` under a sky of radiance 1, around the normal z: by
-/// rings around the mirror direction up to `reach` radians wide, the narrower the nearer to it.
-fn albedo_within(bsdf: &Bsdf, wo: UnitVec3, reach: f64) -> f64 {
-    const RINGS: u32 = 400;
-    const SPOKES: u32 = 64;
-    let mirror = DVec3::new(-f64::from(wo.x), -f64::from(wo.y), f64::from(wo.z)).normalize();
-    let (a, b) = mirror.any_orthonormal_pair();
-    let least = 1e-7f64;
-    let step = (reach / least).ln() / f64::from(RINGS);
-    let mut sum = 0.0;
-    for ring in 0..RINGS {
-        let angle = least * ((f64::from(ring) + 0.5) * step).exp();
-        let area = angle.sin() * angle * step * TAU / f64::from(SPOKES);
-        for spoke in 0..SPOKES {
-            let (sin, cos) = (TAU * (f64::from(spoke) + 0.5) / f64::from(SPOKES)).sin_cos();
-            let wi = mirror * angle.cos() + (a * cos + b * sin) * angle.sin();
-            if wi.z > 0.0 {
-                let wi = UnitVec3::normalize(wi.as_vec3()).unwrap();
-                let value = bsdf.eval(UnitVec3::Z, wo, wi).max_channel();
-                sum += f64::from(value) * f64::from(wi.z) * area;
-            }
-        }
-    }
-    sum
-}
-
-fn albedo(bsdf: &Bsdf, wo: UnitVec3) -> f64 {
-    albedo_within(bsdf, wo, PI)
-}
-
-const ELEVATIONS: [f64; 10] = [3.0, 6.0, 10.0, 15.0, 22.0, 30.0, 45.0, 60.0, 75.0, 90.0];
-
-/// L7: under a uniform sky nothing is brighter than the sky, and white is nearly as bright.
-#[test]
-fn white_materials_of_gltf_stay_below_a_uniform_sky() {
-    let settings = Settings {
-        max_depth: 64,
-        ..settings(1, Pattern::Sobol)
-    };
-    let mut faults = Vec::new();
-    for metallic in [0.0, 0.5, 1.0] {
-        for transmission in [0.0, 0.5, 1.0] {
-            for roughness in ROUGHNESSES {
-                let mut scene = Scene::default();
-                let material = coated(metallic, roughness, transmission, 1.5);
-                add_quad(&mut scene, Vec3::ZERO, Vec3::X, Vec3::Y, material);
-                scene.background = Background {
-                    radiance: Rgb::WHITE,
-                    ambient: Rgb::WHITE,
-                };
-                for degrees in ELEVATIONS {
-                    let eye = *wo(degrees);
-                    let got = radiance(&scene, eye, -eye, &settings).max_channel();
-                    if !(0.8..=1.001).contains(&got) {
-                        faults.push(format!(
-                            "metallic {metallic}, transmission {transmission}, roughness \
-                             {roughness}, {degrees} degrees: {got}"
-                        ));
-                    }
-                }
-            }
-        }
-    }
-    assert!(faults.is_empty(), "{}", faults.join("\n"));
-}
+use halfshade::stress::scattering::*;
+use halfshade::texture::TexturedScalar;
 
 /// L7: the same for solid bodies, which light enters and leaves.
 #[test]
@@ -191,65 +91,6 @@ fn a_metal_shows_a_light_once() {
 }
 
 #[test]
-fn microfacets_over_a_diffuse_base_make_no_energy() {
-    let mut faults = Vec::new();
-    for index in [0.0, 1.0, 1.5, 100.0] {
-        for metallic in [0.0, 0.5, 1.0] {
-            for roughness in ROUGHNESSES {
-                let bsdf = bsdf(&coated(metallic, roughness, 0.0, index));
-                for degrees in ELEVATIONS {
-                    let got = albedo(&bsdf, wo(degrees));
-                    if got > 1.005 {
-                        faults.push(format!(
-                            "index {index}, metallic {metallic}, roughness {roughness}, \
-                             {degrees} degrees: {got}"
-                        ));
-                    }
-                }
-            }
-        }
-    }
-    assert!(faults.is_empty(), "{}", faults.join("\n"));
-    // A white metal that is nearly smooth loses hardly anything.
-    let got = albedo(&bsdf(&coated(1.0, 0.1, 0.0, 1.5)), wo(60.0));
-    assert!((got - 1.0).abs() < 0.01, "{got}");
-}
-
-#[test]
-fn the_phong_lobe_makes_no_energy_and_loses_none_along_the_normal() {
-    for exponent in (0..=16).map(|k| 10f32.powf(0.5 * k as f32)).chain([0.0]) {
-        let bsdf = bsdf(&glossy(1.0, exponent));
-        for degrees in ELEVATIONS {
-            let got = albedo(&bsdf, wo(degrees));
-            let what = format!("exponent {exponent}, {degrees} degrees: {got}");
-            assert!(got <= 1.005, "{what}");
-            if degrees == 90.0 {
-                assert!((got - 1.0).abs() < 0.005, "{what}");
-            }
-        }
-    }
-}
-
-/// L10: at the limit all light comes from the mirror direction.
-#[test]
-fn narrow_lobes_converge_to_the_mirror_direction() {
-    for degrees in [30.0, 60.0, 90.0f64] {
-        // Phong's lobe takes the cosine along; microfacets mirror all.
-        for (material, expected) in [
-            (glossy(1.0, 1e8), degrees.to_radians().sin()),
-            (coated(1.0, 0.01, 0.0, 1.5), 1.0),
-        ] {
-            let bsdf = bsdf(&material);
-            let near = albedo_within(&bsdf, wo(degrees), 5e-3);
-            assert!(
-                (near - expected).abs() < 0.01,
-                "{degrees}: {near} {expected}"
-            );
-        }
-    }
-}
-
-#[test]
 fn scattering_is_reciprocal() {
     let materials = [
         coated(0.0, 0.02, 0.0, 1.5),
@@ -281,68 +122,5 @@ fn scattering_is_reciprocal() {
                 "{material:?}: {there} {back}"
             );
         }
-    }
-}
-
-/// L10: the value at the peak, beside it and along the horizon, and a whole render.
-#[test]
-fn no_parameter_makes_a_value_that_is_not_finite() {
-    let exponents = [0.0, 1.0, 1e2, 1e4, 1e6, 1e8].map(|n| glossy(1.0, n));
-    let indices = [0.0, 1.0, 1.5, 100.0];
-    let coats = ROUGHNESSES.iter().flat_map(|&roughness| {
-        indices.iter().flat_map(move |&index| {
-            [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0)]
-                .map(|(metallic, transmission)| coated(metallic, roughness, transmission, index))
-        })
-    });
-    let glasses = indices.map(|index| {
-        phong(|p| {
-            p.transmit = Rgb::WHITE;
-            p.index_of_refraction = index;
-        })
-    });
-    let solids = indices.map(|index| {
-        metallic_roughness(|m| {
-            m.metallic = TexturedScalar::constant(0.0);
-            m.roughness = TexturedScalar::constant(0.0);
-            m.transmission = TexturedScalar::constant(1.0);
-            m.thickness = TexturedScalar::constant(1.0);
-            m.index_of_refraction = index;
-        })
-    });
-    let settings = settings(1, Pattern::Sobol);
-    for material in exponents
-        .into_iter()
-        .chain(coats)
-        .chain(glasses)
-        .chain(solids)
-    {
-        let scattering = bsdf(&material);
-        // Viewers are never nearer to the horizon than this.
-        for a in [0.06, 1.0, 30.0, 89.9999, 90.0].map(wo) {
-            for b in [1e-30, 1e-4, 0.06, 1.0, 30.0, 89.9999, 90.0].map(wo) {
-                for wi in [*b, Vec3::new(-b.x, b.y, b.z)] {
-                    let wi = UnitVec3::from_normalized(wi);
-                    let value = scattering.eval(UnitVec3::Z, a, wi);
-                    assert!(value.is_finite(), "{material:?} {a:?} {wi:?}: {value:?}");
-                }
-            }
-        }
-        let mut scene = Scene::default();
-        add_sphere(&mut scene, Vec3::ZERO, 1.0, 8, material.clone());
-        scene.background = Background {
-            radiance: Rgb::WHITE,
-            ambient: Rgb::WHITE,
-        };
-        add_light(
-            &mut scene,
-            point_light(Vec3::new(0.0, 3.0, 3.0), 10.0, 0.0, 1),
-        );
-        let camera = look_at(Vec3::Z * 3.0, Vec3::ZERO);
-        let film = picture(&scene, &camera, &settings);
-        assert_eq!(film.rejected, 0, "{material:?}");
-        // Along the normal, and through the centre.
-        let got = radiance(&scene, Vec3::Z * 3.0, -Vec3::Z, &settings);
-        assert!(got.is_finite(), "{material:?}: {got:?}");
     }
 }

@@ -27,6 +27,7 @@ mod process;
 mod progress;
 mod render;
 mod stats;
+mod stress;
 mod table;
 mod targets;
 mod threshold;
@@ -56,6 +57,7 @@ enum Command {
     Compare(compare::CompareOptions),
     Converge(Box<converge::ConvergeOptions>),
     Bench(bench::BenchOptions),
+    Stress(stress::StressOptions),
 }
 
 /// Does what the arguments say.
@@ -66,5 +68,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Compare(arguments) => compare::run(arguments),
         Command::Converge(arguments) => converge::run(arguments),
         Command::Bench(arguments) => bench::run(arguments),
+        Command::Stress(arguments) => stress::run(arguments),
     }
 }

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::bvh::{Builder, Bvh, Tracer};
-use crate::math::{DAffine3, DMat3, Mat3, Vec3, gamma};
+use crate::math::{DAffine3, DMat3, DVec3, Mat3, Vec3, gamma};
 use crate::scene::{Instance, MeshId, Scene};
 
 use super::placement::Placement;
@@ -96,6 +96,8 @@ pub struct Geometry {
     pub traced: Vec<Traced>,
     /// Triangles that were dropped since a vertex is not a finite number.
     pub non_finite_triangles: u64,
+    /// Triangles without area, which no ray can hit; each mesh that is kept as instances counts once.
+    pub flat_triangles: u64,
 }
 
 impl Geometry {
@@ -159,6 +161,7 @@ impl Geometry {
             });
         }
 
+        let flat_triangles = trees.iter().map(without_area).sum();
         let non_finite_triangles = trees.iter_mut().map(drop_non_finite).sum();
         let bvhs: Vec<Bvh> = trees
             .par_iter()
@@ -170,6 +173,7 @@ impl Geometry {
             trees,
             traced,
             non_finite_triangles,
+            flat_triangles,
         }
     }
 
@@ -276,6 +280,15 @@ fn flatten(
         })
         .collect();
     (TreeGeometry { positions, indices }, parts)
+}
+
+/// How many triangles have no area, while all their vertices are finite.
+fn without_area(tree: &TreeGeometry) -> u64 {
+    let is_flat = |corners: &&[u32; 3]| {
+        let [a, b, c] = corners.map(|i| tree.positions[i as usize].as_dvec3());
+        (b - a).cross(c - a) == DVec3::ZERO
+    };
+    tree.indices.par_iter().filter(is_flat).count() as u64
 }
 
 /// Collapses triangles with a vertex that is not finite to a point, so that the numbers of the

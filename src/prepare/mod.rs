@@ -95,6 +95,11 @@ fn prepare_all(scene: &Scene, builder: Builder, flatten_budget: u64, keep: Keep)
         geometry.non_finite_triangles,
     );
     let lights: Vec<Light> = scene.lights.iter().map(|l| light(l, &placement)).collect();
+    warnings.add_many(
+        WarningCode::DegenerateTriangle,
+        "triangles without area were left out",
+        geometry.flat_triangles,
+    );
     let prepared = PreparedScene {
         scene,
         placement,

@@ -6,22 +6,10 @@ use halfshade::color::Rgb;
 use halfshade::light::{Falloff, Light, PointLight, SpotLight};
 use halfshade::math::{DVec3, UnitVec3, Vec2, Vec3};
 use halfshade::sampling::Pattern;
+use halfshade::stress::closed_form::{disk_irradiance, polygon_irradiance};
 
 use crate::common::chi_square::Moments;
 use crate::{disk, distant, irradiance, kind, numbers, point, rectangle, sphere, spot, unit};
-
-/// numerics.md L2.
-fn disk_irradiance(radius: f64, height: f64, offset: f64) -> f64 {
-    if offset == 0.0 {
-        return PI * radius * radius / (radius * radius + height * height);
-    }
-    let (h, r) = (height / offset, radius / offset);
-    let z = 1.0 + h * h + r * r;
-    // Z² - 4ρ² = (Z - 2ρ)(Z + 2ρ), and Z - 2ρ² over the root loses digits where ρ is small.
-    let root = ((h * h + (r - 1.0).powi(2)) * (h * h + (r + 1.0).powi(2))).sqrt();
-    // (root - Z + 2ρ²) / root with root - Z = -4ρ²/(root + Z).
-    FRAC_PI_2 * r * r * (2.0 - 4.0 / (root + z)) / root
-}
 
 #[test]
 fn a_disk_gives_the_irradiance_of_its_closed_form() {
@@ -76,18 +64,6 @@ fn a_sphere_gives_the_irradiance_of_its_closed_form() {
         let measured = irradiance(&inside, point, UnitVec3::Y, 200_000);
         measured.assert_mean(PI, &format!("inside at {point}"));
     }
-}
-
-/// numerics.md L4: Lambert's sum over the edges of a polygon above the horizon.
-fn polygon_irradiance(corners: &[DVec3], normal: DVec3) -> f64 {
-    let edges = corners.iter().zip(corners.iter().cycle().skip(1));
-    0.5 * edges
-        .map(|(a, b)| {
-            let cross = a.cross(*b);
-            cross.length().atan2(a.dot(*b)) * cross.normalize().dot(normal)
-        })
-        .sum::<f64>()
-        .abs()
 }
 
 #[test]

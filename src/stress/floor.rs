@@ -1,0 +1,64 @@
+//! A matte floor, lights above it, and the irradiance that arrives.
+
+use std::f32::consts::PI;
+
+use crate::color::Rgb;
+use crate::light::{DiskLight, Light};
+use crate::material::Material;
+use crate::math::{UVec2, UnitVec3, Vec3};
+use crate::sampling::{Pattern, SamplingConfig};
+use crate::scene::{Scene, Settings};
+
+use super::scenes::{add_quad, radiance};
+
+/// Reflectance of the floor.
+pub const RHO: f32 = 0.6;
+
+/// What the floor is made of.
+pub fn matte() -> Material {
+    Material::matte("matte", Rgb::splat(RHO))
+}
+
+/// A small film of so many samples.
+pub fn settings(samples: u32, pattern: Pattern) -> Settings {
+    Settings {
+        size: UVec2::new(24, 18),
+        sampling: SamplingConfig {
+            samples,
+            pattern,
+            ..SamplingConfig::default()
+        },
+        ..Settings::default()
+    }
+}
+
+/// A horizontal plane of reflectance `RHO` through the origin.
+pub fn plane() -> Scene {
+    let mut scene = Scene::default();
+    add_quad(
+        &mut scene,
+        Vec3::ZERO,
+        Vec3::Z * 50.0,
+        Vec3::X * 50.0,
+        matte(),
+    );
+    scene
+}
+
+/// Irradiance at `point` of the plane, from what a ray from above brings back.
+pub fn irradiance(scene: &Scene, point: Vec3, settings: &Settings) -> f32 {
+    let eye = point + Vec3::new(0.3, 1.0, 0.2);
+    radiance(scene, eye, point - eye, settings).g * PI / RHO
+}
+
+/// A horizontal disk light of radiance 3 above (`offset`, 0, 0), facing down.
+pub fn disk(radius: f32, height: f32, offset: f32, samples: u32) -> Light {
+    Light::Disk(DiskLight {
+        center: Vec3::new(offset, height, 0.0),
+        normal: -UnitVec3::Y,
+        radius,
+        radiance: Rgb::splat(3.0),
+        is_visible: true,
+        samples,
+    })
+}
