@@ -24,7 +24,7 @@ use super::options::{KeepOptions, SceneArguments};
 Examples:
   halfshade info scenes/house.toml
   halfshade info bunny.obj --json
-  halfshade info model.glb --measure --set integrator.kind=depth
+  halfshade info models/house.glb --measure --set integrator.kind=depth
       what a depth picture does not need, and what time and memory that saves")]
 pub struct InfoOptions {
     #[command(flatten)]

@@ -92,7 +92,13 @@ impl Check {
     /// The worst of a sweep, which may be `bound` at most everywhere; what is not a number is the worst.
     pub fn worst(tried: impl Into<String>, bound: f64, sweep: Sweep) -> Self {
         let points = sweep.curves.iter().flat_map(|curve| &curve.points);
-        let worst = points.fold(0.0, |worst, &(_, y)| if y <= worst { worst } else { y });
+        let worst = points.fold(0.0, |worst: f64, &(_, y)| {
+            if worst.is_nan() || y <= worst {
+                worst
+            } else {
+                y
+            }
+        });
         Self {
             sweep: Some(sweep),
             ..Self::at_most(tried, worst, bound)

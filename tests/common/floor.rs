@@ -1,4 +1,5 @@
 //! The matte floor of the numerical cases, for tests.
+#![allow(unused_imports)] // each test file uses its own part of it
 
 pub use halfshade::stress::closed_form::*;
 pub use halfshade::stress::floor::*;

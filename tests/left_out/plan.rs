@@ -47,17 +47,17 @@ fn a_picture_reads_no_image_that_only_hidden_surfaces_name() {
         of_kind(&whitted, Omission::Images),
         [
             (
-                "2 images: image 6 \"unnamed\", image 8 \"broken\"",
+                "2 images: image \"unnamed\", image \"broken\"",
                 "no material names them",
                 2 * IMAGE_BYTES
             ),
             (
-                "1 image: image 5 \"hidden\"",
+                "1 image: image \"hidden\"",
                 "nothing that is shown is made of their materials",
                 IMAGE_BYTES
             ),
             (
-                "1 image: image 7 \"dark\"",
+                "1 image: image \"dark\"",
                 "their factors are 0",
                 IMAGE_BYTES
             ),
