@@ -124,7 +124,8 @@ fn a_picture_as_good_as_the_reference_is_below_the_floor() {
     let floor = &study["references"][0]["floors"]["relmse"];
     let measured = good["measured_relmse"].as_f64().unwrap();
     let twice = measured / floor["estimate"].as_f64().unwrap() / 2.0;
-    assert!((twice - 1.0).abs() < 0.3, "{twice}: {good}");
+    // Both are estimates from one small picture.
+    assert!((twice - 1.0).abs() < 0.5, "{twice}: {good}");
     for key in ["relmse", "rmse", "bias_squared"] {
         assert!(good[key].is_null(), "{key}: {good}");
     }

@@ -55,9 +55,9 @@ impl ExactRay {
     /// `None` also where the triangle has no area as seen along the ray, beyond rounding.
     #[inline(always)]
     pub fn cross(&self, corners: &[[f32; 3]; 3]) -> Option<Crossing> {
-        let z = self.from_origin(corners, 2);
-        let x = sub(self.from_origin(corners, 0), scale(z, self.shear[0]));
-        let y = sub(self.from_origin(corners, 1), scale(z, self.shear[1]));
+        let z = self.beyond_origin(corners, 2);
+        let x = sub(self.beyond_origin(corners, 0), scale(z, self.shear[0]));
+        let y = sub(self.beyond_origin(corners, 1), scale(z, self.shear[1]));
         let [reach, error] = reach_and_edge_error(x, y, z);
         let mut weights = edge_functions(x, y);
         let mut area = sum(weights);
@@ -94,7 +94,7 @@ impl ExactRay {
 
     /// Coordinate `axis` of the corners, less that of the ray's origin.
     #[inline(always)]
-    fn from_origin(&self, corners: &[[f32; 3]; 3], axis: usize) -> Four {
+    fn beyond_origin(&self, corners: &[[f32; 3]; 3], axis: usize) -> Four {
         let [a, b, c] = corners;
         let o = self.origin[axis];
         let widened = [

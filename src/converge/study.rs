@@ -206,7 +206,7 @@ fn unbeaten(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     points
 }
 
-fn grouped<'a, T>(points: &'a [T], name: fn(&T) -> &String) -> Vec<(&'a str, Vec<&'a T>)> {
+fn grouped<T>(points: &[T], name: fn(&T) -> &String) -> Vec<(&str, Vec<&T>)> {
     let mut groups: Vec<(&str, Vec<&T>)> = Vec::new();
     for point in points {
         match groups.iter_mut().find(|group| group.0 == name(point)) {

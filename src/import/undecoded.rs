@@ -101,12 +101,15 @@ fn fault(name: &str, problem: &Problem) -> Fault {
     (code, format!("{name}: {problem}"))
 }
 
+/// The bytes of an image file, or why there are none.
+type Encoded<'a> = Result<Cow<'a, [u8]>, Fault>;
+
 /// Keeps those images whose pixels, added up in order, are in proportion to their model's files.
 fn within_budget<'a>(
     undecoded: &[Undecoded],
     names: &[String],
-    encoded: Vec<Result<Cow<'a, [u8]>, Fault>>,
-) -> Vec<Result<Cow<'a, [u8]>, Fault>> {
+    encoded: Vec<Encoded<'a>>,
+) -> Vec<Encoded<'a>> {
     let mut budgets = BTreeMap::new();
     for (entry, bytes) in undecoded.iter().zip(&encoded) {
         let budget: &mut Budget = budgets
@@ -114,7 +117,7 @@ fn within_budget<'a>(
             .or_insert_with(|| Budget::for_pixels(0));
         budget.add_file(bytes.as_ref().map_or(0, |bytes| bytes.len() as u64));
     }
-    let check = |((entry, name), bytes): ((&Undecoded, &String), Result<Cow<'a, [u8]>, Fault>)| {
+    let check = |entry: &Undecoded, name: &String, bytes: Encoded<'a>| {
         let bytes = bytes?;
         images::decoded_bytes(&bytes, name)
             .and_then(|needed| {
@@ -128,7 +131,7 @@ fn within_budget<'a>(
         .iter()
         .zip(names)
         .zip(encoded)
-        .map(check)
+        .map(|((entry, name), bytes)| check(entry, name, bytes))
         .collect()
 }
 

@@ -73,7 +73,7 @@ impl Course {
             Self::Adaptive(allotment) => {
                 let scale = allotment.scale(within);
                 Step {
-                    reach: f64::from(scale),
+                    reach: scale,
                     outcome: allotment.at(scale),
                 }
             }

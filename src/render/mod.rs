@@ -149,7 +149,7 @@ pub fn render_within(
         total: AtomicU64::new(job.crop.area() * u64::from(limits.samples)),
         has_forecast: false,
     };
-    let stopped_by = run.to_the_end();
+    let stopped_by = run.finish();
     assemble(job, &run.tiles, stopped_by)
 }
 
@@ -170,7 +170,7 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    fn to_the_end(&mut self) -> StoppedBy {
+    fn finish(&mut self) -> StoppedBy {
         if let Some(end) = self.first_passes() {
             return end;
         }
