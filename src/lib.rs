@@ -35,7 +35,7 @@
 //! | [`integrate`] | a ray | the radiance that comes back along it |
 //! | [`render`] | a prepared scene, a camera, settings | a film |
 //! | [`output`] | pixels | files |
-//! | [`bench`] | triangles, rays, scenes | how long they take |
+//! | [`mod@bench`] | triangles, rays, scenes | how long they take |
 //! | [`report`] | pictures, measurements | how far they are apart, error maps, fits, plots, pages |
 //! | [`converge`] | a scene, methods | error against run time |
 //! | [`stress`] | extreme scenes | how far they are from their known answers |

@@ -3,7 +3,7 @@
 //! Geometry at every scale and place ([`geometry`]) and light of every size ([`light`]), each case a
 //! pure function from the [`Effort`] to its [`Check`]s: what was tried, what was measured, what
 //! bound it must keep. The scenes ([`scenes`], [`floor`], [`meshes`]), closed forms ([`closed_form`]) and the
-//! tracer in double precision ([`reference`]) serve the tests as well. A scene of anyone's own is
+//! tracer in double precision ([`mod@reference`]) serve the tests as well. A scene of anyone's own is
 //! held against itself in [`invariance`].
 
 mod check;
