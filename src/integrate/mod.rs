@@ -16,12 +16,28 @@ use crate::prepare::PreparedScene;
 use crate::sampling::{Pattern, Sampler};
 use crate::scene::{IntegratorKind, Settings};
 
+/// Where a sample of a pixel begins.
+#[derive(Clone, Copy, Debug)]
+pub struct CameraSample {
+    /// Its ray from the camera.
+    pub ray: Ray,
+    /// Its other numbers.
+    pub sampler: Sampler,
+}
+
 /// A technique: what light, or what else, comes back along a ray.
 pub trait Integrator: Sync {
     /// Radiance along `ray`, W/(m² sr), with the random numbers of `sampler`.
     ///
     /// The rays that are traced for it are counted, and on request recorded, in `log`.
     fn radiance(&self, ray: &Ray, sampler: &Sampler, log: &mut RayLog) -> Rgb;
+
+    /// [`Self::radiance`] of each of `samples`, appended to `radiances`, with the same bits. Samples of near
+    /// places of the film may be quicker together than one by one.
+    fn radiances(&self, samples: &[CameraSample], radiances: &mut Vec<Rgb>, log: &mut RayLog) {
+        let all = samples.iter();
+        radiances.extend(all.map(|s| self.radiance(&s.ray, &s.sampler, log)));
+    }
 
     /// What [`Self::radiance`] is along every ray that meets nothing.
     fn background(&self) -> Rgb;

@@ -184,6 +184,20 @@ impl PreparedScene<'_> {
         })
     }
 
+    /// The nearest hit of each of `rays`, into `hits`, which is as long.
+    pub fn closest_hits(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
+        self.geometry.tracer.closest_hits(rays, hits);
+    }
+
+    /// Whether something is in the way of each of `rays`, into `blocked`, which is as long; `false`, and nothing is
+    /// done, where [`Self::crossings`] may tell more than that.
+    pub fn are_blocked(&self, rays: &[Ray], blocked: &mut [bool]) -> bool {
+        if !self.has_transparency {
+            self.geometry.tracer.any_hits(rays, blocked);
+        }
+        !self.has_transparency
+    }
+
     /// Whether two hits of a ray are on an edge or corner that their triangles share, and the
     /// triangles face the same way.
     fn is_same_crossing(&self, ray: &Ray, a: &Hit, b: &Hit) -> bool {
