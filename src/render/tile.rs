@@ -7,7 +7,7 @@ use crate::camera::{CameraRays, film_position};
 use crate::color::Rgb;
 use crate::film::{ErrorSums, Film, Pixel, RayCounts, Rect, RejectedSample, StoppedBy};
 use crate::integrate::{CameraSample, FirstSurface, Integrator, RayLog};
-use crate::math::{Ray, UVec2, Vec2};
+use crate::math::{Ray, UVec2, Vec2, morton_pixel};
 use crate::sampling::Sampler;
 
 /// Pixels along the edge of a tile.
@@ -94,12 +94,12 @@ impl Tile {
         done
     }
 
-    /// Its pixels with their places in its vectors, neighbours near each other (Morton 1966): what
-    /// is traced together is to be near.
+    /// Its pixels with their places in its vectors, neighbours near each other: what is traced together is to
+    /// be near.
     fn pixels_by_neighbourhood(&self) -> impl Iterator<Item = (usize, UVec2)> + use<> {
         let rect = self.rect;
         (0..TILE * TILE).filter_map(move |code| {
-            let (x, y) = (every_other_bit(code), every_other_bit(code >> 1));
+            let UVec2 { x, y } = morton_pixel(code);
             let place = (y * rect.width + x) as usize;
             let pixel = UVec2::new(rect.x + x, rect.y + y);
             (x < rect.width && y < rect.height).then_some((place, pixel))
@@ -211,11 +211,6 @@ impl<'a> Batch<'a> {
         self.integrator
             .radiances(&self.samples, &mut self.radiances, &mut self.log);
     }
-}
-
-/// The number made of the bits 0, 2, 4 and 6 of `code`.
-fn every_other_bit(code: u32) -> u32 {
-    (code & 1) | (code >> 1 & 2) | (code >> 2 & 4) | (code >> 3 & 8)
 }
 
 /// Sample `index` of `pixel`: its ray from the camera, and its other numbers.
