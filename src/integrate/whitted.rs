@@ -5,7 +5,7 @@ use crate::bvh::Hit;
 use crate::color::Rgb;
 use crate::interaction::Interaction;
 use crate::light::{Light, LightSample, ShadowEnd};
-use crate::material::{Bsdf, reflect, refract};
+use crate::material::{Bsdf, View, reflect, refract};
 use crate::math::Ray;
 use crate::prepare::{PreparedScene, Surface};
 use crate::sampling::Sampler;
@@ -122,10 +122,10 @@ impl<'a> Whitted<'a> {
     /// Emitted, ambient and direct light that leaves `surface` to the viewer.
     fn shade(&self, surface: &Surface, from: &Pending, sampler: &Sampler, log: &mut RayLog) -> Rgb {
         let at = &surface.interaction;
-        let cos_o = at.shading_normal.dot(*at.wo);
+        let view = surface.view();
         let ambient = self.scene.background.ambient * surface.material.occlusion(&surface.lookup);
         let mut total =
-            surface.material.emitted(&surface.lookup) + ambient * surface.bsdf.ambient(cos_o);
+            surface.material.emitted(&surface.lookup) + ambient * surface.bsdf.ambient(&view);
         if from.depth >= self.max_depth {
             return total;
         }
@@ -142,7 +142,7 @@ impl<'a> Whitted<'a> {
             for j in 0..count {
                 let u = sampler.light(from.vertex, number, j, count);
                 if let Some(sample) = light.sample(at.point, u) {
-                    sum += self.direct(at, &bsdf, &sample, from, number, log);
+                    sum += self.direct(at, &bsdf, &view, &sample, from, number, log);
                 }
             }
             total += sum / count as f32;
@@ -151,27 +151,35 @@ impl<'a> Whitted<'a> {
     }
 
     /// What one sample of a light adds.
+    #[allow(clippy::too_many_arguments)]
     fn direct(
         &self,
         at: &Interaction,
         bsdf: &Bsdf,
+        view: &View,
         sample: &LightSample,
         from: &Pending,
         light: u32,
         log: &mut RayLog,
     ) -> Rgb {
         let cos_i = at.shading_normal.dot(*sample.wi);
-        if cos_i <= 0.0 || at.geometric_normal.dot(*sample.wi) <= 0.0 {
+        // Light from behind shows on what scatters it through; both normals must agree where it is.
+        let side = match cos_i > 0.0 {
+            true => 1.0,
+            false if bsdf.is_translucent() => -1.0,
+            false => return Rgb::BLACK,
+        };
+        if at.geometric_normal.dot(*sample.wi) * side <= 0.0 {
             return Rgb::BLACK;
         }
         // The end of the shadow ray may be below the horizon of a point that sees the centre.
         if let ShadowEnd::Point(end) = sample.shadow
-            && at.geometric_normal.dot(end - at.point) <= 0.0
+            && at.geometric_normal.dot(end - at.point) * side <= 0.0
         {
             return Rgb::BLACK;
         }
-        let scattered = bsdf.eval(at.shading_normal, at.wo, sample.wi);
-        let unshadowed = sample.weight * scattered * cos_i;
+        let scattered = bsdf.shown(view, sample.wi);
+        let unshadowed = sample.weight * scattered * cos_i.abs();
         if unshadowed.is_black() {
             return Rgb::BLACK;
         }

@@ -8,7 +8,7 @@ use crate::material::{
 };
 use crate::math::{DVec3, Frame, ONE_MINUS_EPSILON, Ray, UnitVec3, Vec2, Vec3};
 use crate::scene::{Instance, Mesh};
-use crate::texture::Encoding;
+use crate::texture::{Encoding, TextureRef};
 
 use super::PreparedScene;
 use super::geometry::Placing;
@@ -24,6 +24,10 @@ pub struct Surface<'a> {
     pub lookup: Lookup<'a>,
     /// How it scatters light there.
     pub bsdf: Bsdf,
+    /// Around the shading normal; its tangent is the direction in which highlights are long.
+    pub frame: Frame,
+    /// Normal of a coat, on the viewer's side.
+    pub coat_normal: UnitVec3,
 }
 
 impl Surface<'_> {
@@ -77,22 +81,30 @@ impl Surface<'_> {
         (at.geometric_normal.dot(wi) > 0.0) != (at.shading_normal.dot(wi) > 0.0)
     }
 
-    fn view(&self) -> View {
+    /// Share of the light from behind that goes on as if nothing were there, but for its colour:
+    /// what [`Surface::sample`] sends straight on.
+    pub fn straight(&self) -> Rgb {
+        self.bsdf.straight(&self.view())
+    }
+
+    /// As the viewer sees it.
+    pub fn view(&self) -> View {
         View {
-            frame: Frame::around(self.interaction.shading_normal),
+            frame: self.frame,
+            coat_normal: self.coat_normal,
             wo: self.interaction.wo,
-            eta: self.relative_index(),
+            is_inside: self.is_inside(),
         }
+    }
+
+    /// Whether the viewer is inside of a body that light passes.
+    pub fn is_inside(&self) -> bool {
+        !self.interaction.is_front && self.material.is_glass() && !self.bsdf.specular.is_thin
     }
 
     /// Index of refraction of the side beyond over the index of the viewer's side.
     pub fn relative_index(&self) -> f32 {
-        let specular = &self.bsdf.specular;
-        if self.interaction.is_front || specular.is_thin {
-            specular.index_of_refraction
-        } else {
-            1.0 / specular.index_of_refraction
-        }
+        self.bsdf.specular.relative_index(self.is_inside())
     }
 }
 
@@ -231,20 +243,36 @@ impl<'a> PreparedScene<'a> {
         let is_front = outward.dot(*wo) >= 0.0;
         let geometric_normal = if is_front { outward } else { -outward };
         let smooth = self.smooth_normal(&at).unwrap_or(outward);
-        let bumped = match &material.normal_map {
+        let bent = |map: Option<&NormalMap>| match map {
             Some(map) => self.bumped(map, &at, &lookup, edges, smooth),
             None => smooth,
         };
+        let seen = |normal| facing(normal, geometric_normal, wo);
+        let shading_normal = seen(bent(material.normal_map.as_ref()));
+        let coat_normal = match material.has_coat() {
+            true => seen(bent(material.coat_normal_map())),
+            false => shading_normal,
+        };
+        let grain = material.grain(&lookup).and_then(|grain| {
+            let map = material.normal_map.map(|map| map.texture);
+            let frame = self
+                .vertex_frame(&at, smooth)
+                .or_else(|| texture_frame(map.as_ref(), &at, edges, smooth))?;
+            let along = frame.tangent * grain.x + frame.bitangent * grain.y;
+            frame_along(shading_normal, along, 1.0)
+        });
         Surface {
             bsdf: material.bsdf(&lookup),
             interaction: Interaction {
                 point,
                 point_error: self.point_error(hit, ray, point),
                 geometric_normal,
-                shading_normal: facing(bumped, geometric_normal, wo),
+                shading_normal,
                 wo,
                 is_front,
             },
+            frame: grain.unwrap_or_else(|| Frame::around(shading_normal)),
+            coat_normal,
             material,
             lookup,
         }
@@ -297,7 +325,7 @@ impl<'a> PreparedScene<'a> {
         let tangent_space = self.map_normal(map, lookup);
         let frame = self
             .vertex_frame(at, normal)
-            .or_else(|| texture_frame(map, at, edges, normal))
+            .or_else(|| texture_frame(Some(&map.texture), at, edges, normal))
             .unwrap_or_else(|| Frame::around(normal));
         UnitVec3::normalize(frame.to_world(tangent_space)).unwrap_or(normal)
     }
@@ -343,17 +371,20 @@ impl<'a> PreparedScene<'a> {
     }
 }
 
-/// The frame whose tangent follows u of the map's own texture coordinates.
+/// The frame whose tangent follows u of the texture coordinates that `map` is read with; without
+/// one, of the first.
 fn texture_frame(
-    map: &NormalMap,
+    map: Option<&TextureRef>,
     at: &Located,
     edges: [DVec3; 2],
     normal: UnitVec3,
 ) -> Option<Frame> {
-    let uvs = at.mesh.uv_sets().get(usize::from(map.texture.uv_set))?;
-    let [a, b, c] = at
-        .corners
-        .map(|i| map.texture.transform.transform_point2(uvs[i as usize]));
+    let set = map.map_or(0, |map| usize::from(map.uv_set));
+    let uvs = at.mesh.uv_sets().get(set)?;
+    let [a, b, c] = at.corners.map(|i| {
+        let uv = uvs[i as usize];
+        map.map_or(uv, |map| map.transform.transform_point2(uv))
+    });
     let (d1, d2) = ((b - a).as_dvec2(), (c - a).as_dvec2());
     let determinant = d1.perp_dot(d2);
     if determinant == 0.0 {

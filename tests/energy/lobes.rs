@@ -8,16 +8,16 @@ use halfshade::material::{Bsdf, Lookup, MAX_UV_SETS, Material, View};
 use halfshade::math::{DVec3, Frame, UnitVec3, Vec2};
 
 use crate::common::chi_square::{Moments, p_value};
-use crate::materials::{Case, cases};
+use crate::materials::{self, Case, cases};
 
 /// Rows of equal solid angle over the sphere, and columns of each.
 const ROWS: usize = 24;
 const COLUMNS: usize = 24;
 /// Cuts of each side of a bin when its density is integrated.
-const CUTS: usize = 16;
+const CUTS: usize = 12;
 
 /// How a flat surface with the normal z is seen from so many degrees above it.
-pub fn view(degrees_above: f64, eta: f32) -> View {
+pub fn view(degrees_above: f64, is_inside: bool) -> View {
     let (sin, cos) = degrees_above.to_radians().sin_cos();
     let turned = DVec3::new(cos * 0.8, cos * 0.6, sin);
     View {
@@ -27,7 +27,8 @@ pub fn view(degrees_above: f64, eta: f32) -> View {
             normal: UnitVec3::Z,
         },
         wo: UnitVec3::normalize(turned.as_vec3()).unwrap(),
-        eta,
+        coat_normal: UnitVec3::Z,
+        is_inside,
     }
 }
 
@@ -98,13 +99,13 @@ fn samples_follow_their_density() {
     for Case {
         name,
         material,
-        eta,
+        is_inside,
         ..
     } in cases().iter().filter(|case| case.is_wide)
     {
         let bsdf = bsdf(material);
         for degrees in [8.0, 40.0, 80.0] {
-            let view = view(degrees, *eta);
+            let view = view(degrees, *is_inside);
             let shares = expected(&bsdf, &view);
             let mut counts = vec![0; shares.len()];
             let mut elsewhere = 0;
@@ -119,7 +120,7 @@ fn samples_follow_their_density() {
             }
             let what = format!("{name}, {degrees} degrees");
             let total: f64 = shares.iter().sum();
-            assert!(total < 1.0 + 2e-3, "{what}: densities add up to {total}");
+            assert!(total < 1.0 + 1e-2, "{what}: densities add up to {total}");
             // Bins that expect little are put together, with what comes from nowhere.
             let mut rest = (elsewhere, (1.0 - total).max(0.0));
             let (mut kept, mut probabilities) = (Vec::new(), Vec::new());
@@ -157,13 +158,13 @@ fn weights_are_value_times_cosine_over_density() {
     for Case {
         name,
         material,
-        eta,
+        is_inside,
         ..
     } in &cases()
     {
         let bsdf = bsdf(material);
         for degrees in [3.0, 25.0, 60.0, 90.0] {
-            let view = view(degrees, *eta);
+            let view = view(degrees, *is_inside);
             for i in 0..2000 {
                 let (u_lobe, u) = point(i);
                 let Some(sample) = bsdf.sample(&view, u_lobe, u) else {
@@ -203,29 +204,31 @@ pub fn mean_weight(bsdf: &Bsdf, view: &View, samples: u32) -> [Moments; 3] {
 
 #[test]
 fn no_lobe_gives_back_more_than_it_gets() {
+    let mut faults = Vec::new();
     for Case {
         name,
         material,
-        eta,
+        is_inside,
         ..
     } in &cases()
     {
         let bsdf = bsdf(material);
         for degrees in [0.5, 3.0, 10.0, 30.0, 60.0, 90.0] {
-            for (channel, moments) in mean_weight(&bsdf, &view(degrees, *eta), 3000)
+            for (channel, moments) in mean_weight(&bsdf, &view(degrees, *is_inside), 6000)
                 .iter()
                 .enumerate()
             {
                 let got = moments.mean();
-                // Points are spread evenly: their error is far below that of independent ones.
-                let slack = 1e-4 + moments.standard_error();
-                assert!(
-                    got <= 1.0 + slack,
-                    "{name}, {degrees} degrees, channel {channel}: {got} ± {slack}"
-                );
+                let slack = 1e-4 + 4.0 * moments.standard_error();
+                if got > 1.0 + slack {
+                    faults.push(format!(
+                        "{name}, {degrees} degrees, channel {channel}: {got} ± {slack}"
+                    ));
+                }
             }
         }
     }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
 #[test]
@@ -233,7 +236,7 @@ fn reflection_is_the_same_both_ways() {
     for Case {
         name,
         material,
-        eta,
+        is_inside,
         ..
     } in &cases()
     {
@@ -244,7 +247,7 @@ fn reflection_is_the_same_both_ways() {
             let back = direction(f64::from(u.y) * 0.99 + 0.01, 40.0 * f64::from(a));
             let seen = |wo| View {
                 wo,
-                ..view(90.0, *eta)
+                ..view(90.0, *is_inside)
             };
             let f = bsdf.value(&seen(there), back);
             let g = bsdf.value(&seen(back), there);
@@ -254,5 +257,53 @@ fn reflection_is_the_same_both_ways() {
                 "{name}: {f:?} {g:?}"
             );
         }
+    }
+}
+
+/// What rough surfaces lose: light that meets several facets is added by tables, but for that
+/// which is refracted.
+#[test]
+fn white_lobes_lose_little() {
+    let kinds: [(&str, fn(f32) -> Material, f64); 4] = [
+        ("metal", materials::metal, 0.005),
+        ("plastic", materials::plastic, 0.005),
+        (
+            "pane",
+            |roughness| materials::glass(roughness, false, 0.0),
+            0.02,
+        ),
+        (
+            "body",
+            |roughness| materials::glass(roughness, true, 0.0),
+            0.25,
+        ),
+    ];
+    for (name, material, most) in kinds {
+        let mut text = String::new();
+        for roughness in [0.05, 0.2, 0.4, 0.6, 0.8, 1.0f32] {
+            let bsdf = bsdf(&material(roughness));
+            let losses = [10.0, 30.0, 60.0, 90.0].map(|degrees| {
+                let [_, green, _] = mean_weight(&bsdf, &view(degrees, false), 8000);
+                assert!(
+                    green.standard_error() < 5e-3,
+                    "{name}, {roughness}, {degrees}"
+                );
+                (
+                    1.0 - green.mean() - 4.0 * green.standard_error(),
+                    1.0 - green.mean(),
+                )
+            });
+            let worst = losses
+                .into_iter()
+                .map(|(least, _)| least)
+                .fold(0.0, f64::max);
+            assert!(
+                worst < most,
+                "{name}, roughness {roughness}: {worst} of the light is lost"
+            );
+            let largest = losses.into_iter().map(|(_, loss)| loss).fold(0.0, f64::max);
+            text += &format!(" {roughness}: {:.1} %", 100.0 * largest);
+        }
+        println!("{name}: the most that is lost from any side, by roughness:{text}");
     }
 }
