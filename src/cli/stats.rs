@@ -116,6 +116,7 @@ impl<'a> Stats<'a> {
             camera,
             shadow,
             secondary,
+            clamped: _,
         } = done.film.rays;
         Self {
             size: done.film.size().to_array(),

@@ -64,15 +64,17 @@ pub struct RejectedSample {
     pub index: u32,
 }
 
-/// Rays that were traced.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// Rays that were traced, and what was taken from what they brought.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RayCounts {
     /// From the camera.
     pub camera: u64,
     /// From surfaces to lights.
     pub shadow: u64,
-    /// Mirrored and refracted.
+    /// Mirrored, refracted and scattered.
     pub secondary: u64,
+    /// The luminance that clamping took from all samples together, W/(m² sr).
+    pub clamped: f64,
 }
 
 impl RayCounts {
@@ -86,6 +88,7 @@ impl RayCounts {
         self.camera += other.camera;
         self.shadow += other.shadow;
         self.secondary += other.secondary;
+        self.clamped += other.clamped;
     }
 }
 

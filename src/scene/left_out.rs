@@ -20,7 +20,7 @@ impl Needs {
     pub fn of(integrator: IntegratorKind) -> Self {
         let nothing = Self::default();
         match integrator {
-            IntegratorKind::Whitted => Self {
+            IntegratorKind::Whitted | IntegratorKind::Path => Self {
                 scattering: true,
                 normals: true,
                 albedo: true,

@@ -1,7 +1,7 @@
 //! `[film]`, `[sampling]`, `[integrator]` and `[background]`.
 
 use super::section::Section;
-use super::value::{NON_NEGATIVE, Value};
+use super::value::{NON_NEGATIVE, POSITIVE, Value};
 use crate::color::Rgb;
 use crate::import::ImportError;
 use crate::math::UVec2;
@@ -19,7 +19,7 @@ pub fn read(root: &Section) -> Result<Settings, ImportError> {
         settings.sampling = sampling(value)?;
     }
     if let Some(value) = root.value("integrator") {
-        let keys = &["kind", "max_depth"];
+        let keys = &["kind", "max_depth", "clamp"];
         let section = Section::new(root.source, value.node, "[integrator]", keys)?;
         settings.integrator = section
             .get("kind", integrator)?
@@ -27,6 +27,7 @@ pub fn read(root: &Section) -> Result<Settings, ImportError> {
         settings.max_depth = section
             .get("max_depth", |v| v.integer_u32(1, MAX_DEPTH))?
             .unwrap_or(settings.max_depth);
+        settings.clamp = section.get("clamp", |v| v.single(POSITIVE))?;
     }
     Ok(settings)
 }
@@ -92,9 +93,5 @@ fn sampling(value: Value) -> Result<SamplingConfig, ImportError> {
 }
 
 fn integrator(value: Value) -> Result<IntegratorKind, ImportError> {
-    if value.string()? == "path" {
-        let what = "the integrator \"path\"";
-        return Err(value.source.unsupported(&value.node.place, what));
-    }
     value.one_of(IntegratorKind::ALL, IntegratorKind::name)
 }
