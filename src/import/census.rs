@@ -39,7 +39,7 @@ fn strip_materials(scene: &mut Scene, needs: Needs) -> Vec<Unread> {
     for instance in &scene.instances {
         is_shown[instance.material.0 as usize] = true;
     }
-    let has_ambient = !scene.background.ambient.is_black();
+    let has_ambient = needs.ambient && !scene.background.ambient.is_black();
     let mut images: Vec<Unread> = vec![Some(BTreeSet::new()); scene.images.len()];
     for (material, is_shown) in scene.materials.iter_mut().zip(is_shown) {
         let unread = TextureSlot::ALL.map(|slot| match is_shown {
@@ -84,7 +84,8 @@ fn unread(
             Some("the surfaces are opaque")
         }
         TextureSlot::Occlusion if !has_ambient => Some("there is no ambient light to occlude"),
-        TextureSlot::Thickness => Some("volumes are shown clear"),
+        // Whitted shows volumes clear; a path measures its own way through them.
+        TextureSlot::Thickness => Some("what is rendered does not read them"),
         _ if is_multiplied_by_zero(slot, material) => Some("their factors are 0"),
         _ => None,
     }

@@ -8,7 +8,7 @@ use crate::bvh::Builder;
 use crate::camera::{Camera, Projection};
 use crate::color::Rgb;
 use crate::film::{Film, Rect};
-use crate::integrate::{Integrator, RayLog, Whitted};
+use crate::integrate::{RayLog, integrator};
 use crate::light::{Falloff, Light, PointLight};
 use crate::material::{Material, MaterialId, MetallicRoughness, Phong, Surface};
 use crate::math::{DAffine3, DVec3, Ray, UVec2, UnitVec3, Vec3};
@@ -184,7 +184,7 @@ pub fn radiance_in(
 ) -> Rgb {
     let origin = prepared.placement.point(origin.as_dvec3());
     let direction = UnitVec3::normalize(direction).expect("a direction");
-    let integrator = Whitted::new(prepared, settings);
+    let integrator = integrator(prepared, settings);
     let mut log = RayLog::default();
     let count = settings.sampling.samples_per_pixel();
     let mut sum = [0.0f64; 3];
