@@ -3,7 +3,7 @@
 use std::f32::consts::PI;
 
 use crate::color::Rgb;
-use crate::math::UnitVec3;
+use crate::math::{UnitVec3, Vec3};
 
 use super::fresnel::{fresnel_dielectric, reflect, schlick_weight};
 
@@ -46,6 +46,9 @@ pub enum Glossy {
         /// Reflectance at normal and at grazing incidence of the dielectric alone: what it
         /// reflects does not reach the diffuse layer below.
         dielectric: [f32; 2],
+        /// What of `f0` and `f90` is not that of glass, whose reflection goes with what it
+        /// transmits.
+        opaque: (Rgb, f32),
         /// What of `f0` and `f90` no mirror ray follows.
         unmirrored: (Rgb, f32),
     },
@@ -83,11 +86,14 @@ impl Specular {
         if self.transmit.is_black() {
             return (mirrored, Rgb::BLACK);
         }
+        let (reflected, through) = self.glass(cos_o, eta);
+        (mirrored + reflected, through)
+    }
+
+    /// The part of [`Specular::split`] that is glass.
+    pub fn glass(&self, cos_o: f32, eta: f32) -> (Rgb, Rgb) {
         let reflected = fresnel_dielectric(cos_o, eta);
-        (
-            mirrored + self.transmit * reflected,
-            self.transmit * (1.0 - reflected),
-        )
+        (self.transmit * reflected, self.transmit * (1.0 - reflected))
     }
 
     /// Whether light that is let through keeps its direction.
@@ -112,7 +118,7 @@ impl Bsdf {
             Glossy::Phong {
                 reflectance,
                 exponent,
-            } => diffuse + reflectance * phong_lobe(normal, wo, wi, exponent),
+            } => diffuse + reflectance * phong_lobe(*normal, *wo, *wi, exponent),
             Glossy::Ggx {
                 f0,
                 f90,
@@ -165,12 +171,13 @@ impl Bsdf {
     }
 }
 
-fn schlick(f0: Rgb, f90: f32, cos: f32) -> Rgb {
+/// Schlick's approximation of Fresnel's equations, between `f0` and `f90`.
+pub fn schlick(f0: Rgb, f90: f32, cos: f32) -> Rgb {
     f0.lerp(Rgb::splat(f90), schlick_weight(cos))
 }
 
 /// Share that passes a dielectric of reflectance `f0` and `f90` to the layer below.
-fn entering([f0, f90]: [f32; 2], cos: f32) -> f32 {
+pub fn entering([f0, f90]: [f32; 2], cos: f32) -> f32 {
     1.0 - (f0 + (f90 - f0) * schlick_weight(cos))
 }
 
@@ -180,9 +187,10 @@ fn mean_entering([f0, f90]: [f32; 2]) -> f32 {
     1.0 - (f0 + (f90 - f0) / 21.0)
 }
 
-fn phong_lobe(normal: UnitVec3, wo: UnitVec3, wi: UnitVec3, exponent: f32) -> f32 {
+/// Phong's lobe of reflectance 1, 1/sr.
+pub fn phong_lobe(normal: Vec3, wo: Vec3, wi: Vec3, exponent: f32) -> f32 {
     // 1 - cos, without the cancellation that would decide the value at large exponents.
-    let deviation = 0.5 * (reflect(*wi, *normal) - *wo).length_squared();
+    let deviation = 0.5 * (reflect(wi, normal) - wo).length_squared();
     if deviation >= 1.0 {
         return 0.0;
     }

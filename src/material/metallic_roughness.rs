@@ -87,6 +87,7 @@ impl MetallicRoughness {
                 f90,
                 alpha: (roughness * roughness).max(MIN_ALPHA),
                 dielectric: [dielectric.max_channel(), strength],
+                opaque: (solid_f0, solid_f90),
                 unmirrored: (solid_f0 * (1.0 - mirror), solid_f90 * (1.0 - mirror)),
             },
             specular: Specular {
@@ -97,6 +98,20 @@ impl MetallicRoughness {
                 is_thin: self.thickness.factor == 0.0,
             },
         }
+    }
+
+    /// Absorption inside the body, per world unit: `KHR_materials_volume`. `None` in a thin wall
+    /// and in what is clear.
+    pub fn absorption(&self) -> Option<Rgb> {
+        let is_body = self.thickness.factor > 0.0 && self.transmission.factor > 0.0;
+        let is_clear =
+            self.attenuation_distance.is_infinite() || self.attenuation_color == Rgb::WHITE;
+        (is_body && !is_clear).then(|| {
+            // A colour of 0 would be infinite, and infinite × no way at all is not a number.
+            let least = f32::MIN_POSITIVE;
+            self.attenuation_color
+                .map(|c| -c.max(least).ln() / self.attenuation_distance)
+        })
     }
 
     /// Share of ambient light that arrives where `lookup` is, in `[0, 1]`.

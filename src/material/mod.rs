@@ -6,14 +6,18 @@ mod bsdf;
 mod fresnel;
 mod lookup;
 mod metallic_roughness;
+mod microfacet;
 mod phong;
+mod sample;
 mod textures;
 
 pub use bsdf::{Bsdf, Glossy, Specular};
 pub use fresnel::{fresnel_dielectric, reflect, refract};
 pub use lookup::{Lookup, MAX_UV_SETS};
 pub use metallic_roughness::MetallicRoughness;
+pub use microfacet::Ggx;
 pub use phong::Phong;
+pub use sample::{BsdfSample, View};
 pub use textures::TextureSlot;
 
 use crate::color::Rgb;
@@ -114,6 +118,14 @@ impl Material {
             Surface::Unlit(color) => color,
         };
         lookup.rgb(color) * lookup.vertex_rgb()
+    }
+
+    /// Absorption inside a body of it, per world unit; `None` where light crosses it unchanged.
+    pub fn absorption(&self) -> Option<Rgb> {
+        match &self.surface {
+            Surface::MetallicRoughness(surface) => surface.absorption(),
+            Surface::Phong(_) | Surface::Unlit(_) => None,
+        }
     }
 
     /// Opacity in `[0, 1]` where `lookup` is: 0 lets everything pass, and masks are 0 or 1.

@@ -1,8 +1,11 @@
 //! From a hit to everything that shading reads.
 
 use crate::bvh::Hit;
+use crate::color::Rgb;
 use crate::interaction::{Interaction, rounding_error};
-use crate::material::{AlphaMode, Bsdf, Lookup, MAX_UV_SETS, Material, NormalMap};
+use crate::material::{
+    AlphaMode, Bsdf, BsdfSample, Lookup, MAX_UV_SETS, Material, NormalMap, View, reflect, refract,
+};
 use crate::math::{DVec3, Frame, ONE_MINUS_EPSILON, Ray, UnitVec3, Vec2, Vec3};
 use crate::scene::{Instance, Mesh};
 use crate::texture::Encoding;
@@ -24,6 +27,64 @@ pub struct Surface<'a> {
 }
 
 impl Surface<'_> {
+    /// Value for light from `wi`, on either side, per channel and steradian: all lobes that have
+    /// area. The cosine is not included.
+    pub fn eval(&self, wi: UnitVec3) -> Rgb {
+        if self.is_torn(*wi) {
+            return Rgb::BLACK;
+        }
+        self.bsdf.value(&self.view(), wi)
+    }
+
+    /// Density per solid angle with which [`Surface::sample`] chooses `wi` by a lobe that has
+    /// area.
+    pub fn pdf(&self, wi: UnitVec3) -> f32 {
+        if self.is_torn(*wi) {
+            return 0.0;
+        }
+        self.bsdf.pdf(&self.view(), wi)
+    }
+
+    /// Draws a direction for two independent numbers `u_lobe` in `[0, 1)` and `u` in its square;
+    /// `None` where nothing comes from the one that was drawn.
+    pub fn sample(&self, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
+        let drawn = self.bsdf.sample(&self.view(), u_lobe, u)?;
+        if !self.is_torn(*drawn.wi) {
+            return Some(drawn);
+        }
+        // Mirrors and glass would show holes: they follow the triangle where their own normal
+        // sends light through it.
+        let at = &self.interaction;
+        let normal = *at.geometric_normal;
+        let wi = match drawn.is_transmitted {
+            _ if !drawn.is_specular => return None,
+            true => refract(*at.wo, normal, self.relative_index())?,
+            false => reflect(*at.wo, normal),
+        };
+        let wi = UnitVec3::normalize(wi)?;
+        Some(BsdfSample { wi, ..drawn })
+    }
+
+    /// Absorption inside the body, per world unit; `None` where light crosses it unchanged.
+    pub fn absorption(&self) -> Option<Rgb> {
+        self.material.absorption()
+    }
+
+    /// Whether `wi` is above the shading normal's horizon and below the triangle's, or the other
+    /// way round.
+    fn is_torn(&self, wi: Vec3) -> bool {
+        let at = &self.interaction;
+        (at.geometric_normal.dot(wi) > 0.0) != (at.shading_normal.dot(wi) > 0.0)
+    }
+
+    fn view(&self) -> View {
+        View {
+            frame: Frame::around(self.interaction.shading_normal),
+            wo: self.interaction.wo,
+            eta: self.relative_index(),
+        }
+    }
+
     /// Index of refraction of the side beyond over the index of the viewer's side.
     pub fn relative_index(&self) -> f32 {
         let specular = &self.bsdf.specular;
