@@ -6,12 +6,12 @@
 //! Techniques for Monte Carlo Rendering").
 
 mod lights;
-mod scatter;
 mod shadow;
 
 use crate::bvh::Hit;
 use crate::color::Rgb;
 use crate::light::{Light, Receiver, ShadowEnd};
+use crate::material::BsdfSample;
 use crate::math::{Ray, UnitVec3};
 use crate::prepare::{PreparedScene, Surface, TriangleId};
 use crate::sampling::Sampler;
@@ -20,8 +20,6 @@ use crate::scene::Settings;
 use super::{Integrator, RayKind, RayLog, RayRecord, light_samples};
 use lights::{Incident, Lights, Place};
 use shadow::{is_pane, straight_share, transmittance};
-
-use scatter::{BsdfSample, Scatter};
 
 /// Scattering events before a path may be ended by chance.
 const SURE_EVENTS: u32 = 4;

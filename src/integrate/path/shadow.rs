@@ -4,8 +4,6 @@ use crate::color::Rgb;
 use crate::math::Ray;
 use crate::prepare::{PreparedScene, Surface};
 
-use super::scatter::Scatter;
-
 /// Share of the light that comes through along `ray`, per channel.
 ///
 /// Shadow rays cross exactly what paths cross without scattering: holes, what is partly transparent,
