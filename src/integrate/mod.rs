@@ -7,7 +7,7 @@ mod visibility;
 mod whitted;
 
 pub use log::{RayKind, RayLog, RayRecord};
-pub use path::PathTracer;
+pub use path::{PathTracer, Weighing};
 pub use views::{FirstSurface, View, ViewKind};
 pub use whitted::Whitted;
 

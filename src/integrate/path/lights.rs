@@ -4,6 +4,7 @@ use crate::color::Rgb;
 use crate::light::{
     EnvironmentSampler, Light, LightBounds, LightTree, Receiver, SeenTriangle, ShadowEnd,
 };
+use crate::material::{Material, Surface};
 use crate::math::{DVec3, UnitVec3, Vec2, Vec3};
 use crate::prepare::{EmissiveRun, PreparedScene, TriangleId};
 
@@ -241,8 +242,12 @@ impl<'a> Lights<'a> {
             Light::Point(_) | Light::Spot(_) => false,
             other => !other.is_delta(),
         };
+        // Unlit surfaces give off their colour, though they are not looked at as lights.
+        let glows = |material: &Material| {
+            !material.emission.factor.is_black() || matches!(material.surface, Surface::Unlit(_))
+        };
         self.environment.is_some()
-            || !self.runs.is_empty()
+            || self.scene.scene.materials.iter().any(glows)
             || !self.scene.background.radiance.is_black()
             || self.scene.shining.iter().any(has_surface)
     }
