@@ -17,6 +17,7 @@ use crate::render::{Job, render};
 use crate::sampling::Sampler;
 use crate::scene::{Instance, Mesh, MeshId, Placed, Scene, Settings};
 use crate::texture::{Filter, Image, ImageId, Pixels, Texture, TextureId, TextureRef, Wrap};
+use rayon::prelude::*;
 use std::sync::atomic::AtomicBool;
 
 /// Adds a mesh with its own material.
@@ -197,6 +198,23 @@ pub fn radiance_in(
         }
     }
     Rgb::from(sum.map(|s| (s / f64::from(count)) as f32))
+}
+
+/// Green of [`radiance`] for `count` seeds in a row.
+pub fn means(
+    scene: &Scene,
+    origin: Vec3,
+    direction: Vec3,
+    settings: &Settings,
+    count: u64,
+) -> Vec<f64> {
+    let prepared = prepare(scene, Builder::default()).scene;
+    let mean = |seed| {
+        let mut settings = settings.clone();
+        settings.sampling.seed = seed;
+        f64::from(radiance_in(&prepared, origin, direction, &settings).g)
+    };
+    (0..count).into_par_iter().map(mean).collect()
 }
 
 /// A pinhole at `position` that looks at `target`.

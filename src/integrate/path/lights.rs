@@ -1,5 +1,7 @@
 //! All that gives light, and which of it is looked at from a point.
 
+use rayon::prelude::*;
+
 use crate::color::Rgb;
 use crate::light::{
     EnvironmentSampler, Light, LightBounds, LightTree, Receiver, SeenTriangle, ShadowEnd,
@@ -72,11 +74,16 @@ impl<'a> Lights<'a> {
             infinite: Vec::new(),
             few: None,
         };
-        let bounds: Vec<Option<LightBounds>> =
-            (0..next).map(|light| lights.bounds(light)).collect();
+        let bounds: Vec<Option<LightBounds>> = (0..next)
+            .into_par_iter()
+            .map(|light| lights.bounds(light))
+            .collect();
         lights.tree = LightTree::build(&bounds);
         lights.infinite = (scene.shining.iter().copied())
-            .filter(|&light| matches!(scene.lights[light as usize], Light::Distant(_)))
+            .filter(|&light| match &scene.lights[light as usize] {
+                Light::Distant(distant) => !distant.irradiance.is_black(),
+                _ => false,
+            })
             .chain(
                 lights
                     .environment

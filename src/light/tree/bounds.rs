@@ -103,50 +103,6 @@ impl LightBounds {
             None => (wide.axis, PI as f32),
         }
     }
-
-    /// About the most irradiance that they may bring to `receiver`, in arbitrary units; 0 only where
-    /// they bring none (equation 3 of the paper).
-    pub fn importance(&self, receiver: &Receiver) -> f64 {
-        let (min, max) = (self.bounds.min.as_dvec3(), self.bounds.max.as_dvec3());
-        let center = 0.5 * (min + max);
-        let radius_squared = 0.25 * (max - min).length_squared();
-        let to_light = center - receiver.point.as_dvec3();
-        let squared = to_light.length_squared();
-        // Nearer than that, the mean distance of the lights no longer falls.
-        let fall = squared.max(radius_squared).max(f64::MIN_POSITIVE);
-        // Inside of the sphere around the bounds lights may be anywhere.
-        if squared <= radius_squared {
-            return self.intensity / fall;
-        }
-        let way = to_light / squared.sqrt();
-        // The half angle under which the sphere is seen, and a little more for rounding.
-        let spread = (radius_squared / squared).sqrt().asin() + 1e-6;
-
-        let cos_axis = -way.dot(self.axis.as_dvec3());
-        let cos_axis = if self.is_two_sided {
-            cos_axis.abs()
-        } else {
-            cos_axis
-        };
-        let off_axis =
-            (cos_axis.clamp(-1.0, 1.0).acos() - f64::from(self.normals_radians) - spread).max(0.0);
-        if off_axis >= f64::from(self.emission_radians) {
-            return 0.0;
-        }
-        let received = match receiver.normal {
-            None => 1.0,
-            Some(normal) => {
-                let angle = normal.as_dvec3().dot(way).clamp(-1.0, 1.0).acos();
-                let least = (angle - spread).max(0.0);
-                if least >= FRAC_PI_2 {
-                    return 0.0;
-                }
-                least.cos()
-            }
-        };
-        // The cones of spot lights may be wider than a half space.
-        self.intensity * off_axis.cos().max(1e-3) * received / fall
-    }
 }
 
 fn angle(a: DVec3, b: DVec3) -> f64 {

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::{Content, LightBounds, LightTree, NONE, Node};
+use super::{Content, Group, LightBounds, LightTree, NONE, Node};
 
 /// Places along an axis where a group may be cut.
 const BINS: usize = 12;
@@ -20,37 +20,43 @@ pub fn build(lights: &[Option<LightBounds>]) -> LightTree {
         nodes: Vec::with_capacity(2 * shining.len()),
         leaves: vec![NONE; lights.len()],
     };
-    let Some(root) = node(&shining, NONE) else {
+    let Some(around) = bounds(&shining) else {
         return tree;
     };
-    tree.nodes.push(root);
-    let mut pending = vec![(0, shining.as_mut_slice())];
-    while let Some((index, lights)) = pending.pop() {
+    tree.nodes.push(node(&around, NONE));
+    let mut pending = vec![(0, around, shining.as_mut_slice())];
+    while let Some((index, around, lights)) = pending.pop() {
         if let [(number, _)] = lights {
             tree.nodes[index as usize].content = Content::Light(*number);
             tree.leaves[*number as usize] = index;
             continue;
         }
-        let cut = cut(lights, &tree.nodes[index as usize].bounds);
+        let cut = cut(lights, &around);
         let first = tree.nodes.len() as u32;
         tree.nodes[index as usize].content = Content::Children(first);
         let (left, right) = lights.split_at_mut(cut);
-        for (i, side) in (first..).zip([left, right]) {
-            tree.nodes.extend(node(side, index));
-            pending.push((i, side));
+        for side in [left, right] {
+            if let Some(around) = bounds(side) {
+                pending.push((tree.nodes.len() as u32, around, side));
+                tree.nodes.push(node(&around, index));
+            }
         }
     }
     tree
 }
 
-/// A node around `lights`; `None` around nothing.
-fn node(lights: &[Numbered], parent: u32) -> Option<Node> {
-    let bounds = lights.iter().map(|(_, bounds)| *bounds);
-    Some(Node {
-        bounds: bounds.reduce(|a, b| a.union(&b))?,
+/// Around `lights`; `None` around nothing.
+fn bounds(lights: &[Numbered]) -> Option<LightBounds> {
+    let all = lights.iter().map(|(_, bounds)| *bounds);
+    all.reduce(|a, b| a.union(&b))
+}
+
+fn node(around: &LightBounds, parent: u32) -> Node {
+    Node {
+        group: Group::of(around),
         parent,
         content: Content::Light(NONE),
-    })
+    }
 }
 
 /// Puts `lights`, two or more, in order and says where they are cut in two.

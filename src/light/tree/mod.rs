@@ -7,8 +7,10 @@
 
 mod bounds;
 mod build;
+mod importance;
 
 pub use bounds::{LightBounds, Receiver};
+use importance::Group;
 
 /// A tree over lights that are somewhere: all but those that are infinitely far away.
 #[derive(Clone, Debug, Default)]
@@ -24,7 +26,7 @@ const NONE: u32 = u32::MAX;
 
 #[derive(Clone, Debug)]
 struct Node {
-    bounds: LightBounds,
+    group: Group,
     parent: u32,
     content: Content,
 }
@@ -102,7 +104,7 @@ impl LightTree {
 
     /// The probability of the first of two siblings; `None` where neither reaches `receiver`.
     fn share_of_first(&self, first: usize, receiver: &Receiver) -> Option<f64> {
-        let [a, b] = [first, first + 1].map(|i| self.nodes[i].bounds.importance(receiver));
+        let [a, b] = [first, first + 1].map(|i| self.nodes[i].group.importance(receiver));
         let sum = a + b;
         (sum > 0.0).then(|| a / sum)
     }
