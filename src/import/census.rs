@@ -39,7 +39,7 @@ fn strip_materials(scene: &mut Scene, needs: Needs) -> Vec<Unread> {
     for instance in &scene.instances {
         is_shown[instance.material.0 as usize] = true;
     }
-    let has_ambient = !scene.background.ambient.is_black();
+    let has_ambient = needs.ambient && !scene.background.ambient.is_black();
     let mut images: Vec<Unread> = vec![Some(BTreeSet::new()); scene.images.len()];
     for (material, is_shown) in scene.materials.iter_mut().zip(is_shown) {
         let unread = TextureSlot::ALL.map(|slot| match is_shown {

@@ -87,7 +87,7 @@ impl<'a> Whitted<'a> {
                 return total + weight * radiance;
             }
             let Some(hit) = hit else {
-                return total + weight * self.scene.background.radiance;
+                return total + weight * self.scene.radiance_beyond(&from.ray);
             };
             let opacity = self.scene.visibility(&from.ray, &hit);
             let mut straight = Rgb::splat(1.0 - opacity);

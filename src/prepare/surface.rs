@@ -109,13 +109,13 @@ impl Surface<'_> {
 }
 
 /// A hit traced back to the scene's own triangle.
-struct Located<'a> {
+pub(super) struct Located<'a> {
     instance: &'a Instance,
     instance_number: u32,
-    mesh: &'a Mesh,
-    corners: [u32; 3],
+    pub mesh: &'a Mesh,
+    pub corners: [u32; 3],
     /// Weights of the corners; they add up to 1.
-    weights: [f32; 3],
+    pub weights: [f32; 3],
 }
 
 impl Located<'_> {
@@ -140,7 +140,7 @@ fn mix4(a: [f32; 4], wa: f32, b: [f32; 4], wb: f32, c: [f32; 4], wc: f32) -> [f3
 }
 
 impl<'a> PreparedScene<'a> {
-    fn locate(&self, hit: &Hit) -> Located<'a> {
+    pub(super) fn locate(&self, hit: &Hit) -> Located<'a> {
         let traced = &self.geometry.traced[hit.instance as usize];
         let (instance_number, triangle) = match &traced.placing {
             Placing::Flattened(parts) => {
@@ -161,7 +161,7 @@ impl<'a> PreparedScene<'a> {
         }
     }
 
-    fn lookup(&self, at: &Located) -> Lookup<'a> {
+    pub(super) fn lookup(&self, at: &Located) -> Lookup<'a> {
         let mut uvs = [Vec2::ZERO; MAX_UV_SETS];
         for (uv, set) in uvs.iter_mut().zip(at.mesh.uv_sets()) {
             *uv = at.interpolate(set, mix2);
@@ -179,7 +179,7 @@ impl<'a> PreparedScene<'a> {
         }
     }
 
-    fn material(&self, at: &Located) -> &'a Material {
+    pub(super) fn material(&self, at: &Located) -> &'a Material {
         &self.scene.materials[at.instance.material.0 as usize]
     }
 
@@ -217,7 +217,7 @@ impl<'a> PreparedScene<'a> {
     }
 
     /// -1 where the instance mirrors its mesh, else 1.
-    fn orientation(&self, at: &Located) -> f32 {
+    pub(super) fn orientation(&self, at: &Located) -> f32 {
         self.orientation[at.instance_number as usize]
     }
 
