@@ -15,7 +15,10 @@ pub enum RayKind {
     Reflected,
     /// Through glass, with a bend.
     Refracted,
-    /// To the light with this number.
+    /// From a surface, one of all directions in which it scatters.
+    Scattered,
+    /// To the light with this number: those of the scene in file order, then the environment, then
+    /// the triangles that shine.
     Shadow(u32),
 }
 
@@ -25,6 +28,7 @@ impl fmt::Display for RayKind {
             RayKind::Camera => write!(f, "camera ray"),
             RayKind::Reflected => write!(f, "reflected ray"),
             RayKind::Refracted => write!(f, "refracted ray"),
+            RayKind::Scattered => write!(f, "scattered ray"),
             RayKind::Shadow(light) => write!(f, "shadow ray to light {light}"),
         }
     }
@@ -68,7 +72,9 @@ impl RayLog {
     pub fn add(&mut self, kind: RayKind, record: impl FnOnce() -> RayRecord) {
         match kind {
             RayKind::Camera => self.counts.camera += 1,
-            RayKind::Reflected | RayKind::Refracted => self.counts.secondary += 1,
+            RayKind::Reflected | RayKind::Refracted | RayKind::Scattered => {
+                self.counts.secondary += 1
+            }
             RayKind::Shadow(_) => self.counts.shadow += 1,
         }
         if let Some(records) = &mut self.records {

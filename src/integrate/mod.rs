@@ -1,11 +1,13 @@
 //! Techniques: from a ray to the radiance that comes back along it.
 
 mod log;
+mod path;
 mod views;
 mod visibility;
 mod whitted;
 
 pub use log::{RayKind, RayLog, RayRecord};
+pub use path::{PathTracer, Weighing};
 pub use views::{FirstSurface, View, ViewKind};
 pub use whitted::Whitted;
 
@@ -51,6 +53,7 @@ pub fn integrator<'a>(
     let view = |kind| Box::new(View { scene, kind });
     match settings.integrator {
         IntegratorKind::Whitted => Box::new(Whitted::new(scene, settings)),
+        IntegratorKind::Path => Box::new(PathTracer::new(scene, settings)),
         IntegratorKind::Normal => view(ViewKind::Normal),
         IntegratorKind::Depth => view(ViewKind::Depth),
         IntegratorKind::Albedo => view(ViewKind::Albedo),

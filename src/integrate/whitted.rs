@@ -5,7 +5,7 @@ use crate::bvh::Hit;
 use crate::color::Rgb;
 use crate::interaction::Interaction;
 use crate::light::{Light, LightSample, ShadowEnd};
-use crate::material::{Bsdf, reflect, refract};
+use crate::material::{Bsdf, View, reflect, refract};
 use crate::math::Ray;
 use crate::prepare::{PreparedScene, Surface};
 use crate::sampling::Sampler;
@@ -112,7 +112,7 @@ impl<'a> Whitted<'a> {
                 return total + weight * radiance;
             }
             let Some(hit) = next else {
-                return total + weight * self.scene.background.radiance;
+                return total + weight * self.scene.radiance_beyond(&from.ray);
             };
             let opacity = self.scene.visibility(&from.ray, &hit);
             let mut straight = Rgb::splat(1.0 - opacity);
@@ -148,10 +148,10 @@ impl<'a> Whitted<'a> {
     /// Emitted and ambient light that leaves `surface` to the viewer; the direct light waits for shadow rays.
     fn shade(&self, surface: &Surface, from: &Pending, sampler: &Sampler, work: &mut Work) -> Rgb {
         let at = &surface.interaction;
-        let cos_o = at.shading_normal.dot(*at.wo);
+        let view = surface.view();
         let ambient = self.scene.background.ambient * surface.material.occlusion(&surface.lookup);
         let shining =
-            surface.material.emitted(&surface.lookup) + ambient * surface.bsdf.ambient(cos_o);
+            surface.material.emitted(&surface.lookup) + ambient * surface.bsdf.ambient(&view);
         if from.depth >= self.max_depth {
             return shining;
         }
@@ -168,7 +168,7 @@ impl<'a> Whitted<'a> {
                 let u = sampler.light(from.vertex, number, j, count);
                 let shadow = light
                     .sample(at.point, u)
-                    .and_then(|sample| self.direct(at, &bsdf, &sample));
+                    .and_then(|sample| self.direct(at, &bsdf, &view, &sample));
                 if let Some((ray, value)) = shadow {
                     work.shadow_rays.push(ray);
                     work.shadows.push(Shadow {
@@ -184,19 +184,31 @@ impl<'a> Whitted<'a> {
     }
 
     /// What one sample of a light adds where nothing is in the way of a ray.
-    fn direct(&self, at: &Interaction, bsdf: &Bsdf, sample: &LightSample) -> Option<(Ray, Rgb)> {
+    fn direct(
+        &self,
+        at: &Interaction,
+        bsdf: &Bsdf,
+        view: &View,
+        sample: &LightSample,
+    ) -> Option<(Ray, Rgb)> {
         let cos_i = at.shading_normal.dot(*sample.wi);
-        if cos_i <= 0.0 || at.geometric_normal.dot(*sample.wi) <= 0.0 {
+        // Light from behind shows on what scatters it through; both normals must agree where it is.
+        let side = match cos_i > 0.0 {
+            true => 1.0,
+            false if bsdf.is_translucent() => -1.0,
+            false => return None,
+        };
+        if at.geometric_normal.dot(*sample.wi) * side <= 0.0 {
             return None;
         }
         // The end of the shadow ray may be below the horizon of a point that sees the centre.
         if let ShadowEnd::Point(end) = sample.shadow
-            && at.geometric_normal.dot(end - at.point) <= 0.0
+            && at.geometric_normal.dot(end - at.point) * side <= 0.0
         {
             return None;
         }
-        let scattered = bsdf.eval(at.shading_normal, at.wo, sample.wi);
-        let unshadowed = sample.weight * scattered * cos_i;
+        let scattered = bsdf.shown(view, sample.wi);
+        let unshadowed = sample.weight * scattered * cos_i.abs();
         if unshadowed.is_black() {
             return None;
         }

@@ -13,6 +13,8 @@ pub struct Needs {
     pub normals: bool,
     /// Their colours.
     pub albedo: bool,
+    /// How much ambient light comes to them.
+    pub ambient: bool,
 }
 
 impl Needs {
@@ -20,10 +22,11 @@ impl Needs {
     pub fn of(integrator: IntegratorKind) -> Self {
         let nothing = Self::default();
         match integrator {
-            IntegratorKind::Whitted => Self {
+            IntegratorKind::Whitted | IntegratorKind::Path => Self {
                 scattering: true,
                 normals: true,
                 albedo: true,
+                ambient: integrator == IntegratorKind::Whitted,
             },
             IntegratorKind::Normal => Self {
                 normals: true,
@@ -43,6 +46,7 @@ impl Needs {
             scattering: self.scattering || other.scattering,
             normals: self.normals || other.normals,
             albedo: self.albedo || other.albedo,
+            ambient: self.ambient || other.ambient,
         }
     }
 }
