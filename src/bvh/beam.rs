@@ -69,7 +69,8 @@ fn lesser(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-/// What holds some rays of a packet, coordinates in the packet's order of axes.
+/// What holds some rays of a packet, coordinates in the packet's order of axes. Once it is
+/// [`Beam::widened`], along the main axis in the direction of the rays.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Beam {
     /// Of the origins, relative to the packet's centre.
@@ -93,6 +94,21 @@ impl Beam {
             slopes: [u.union(other.slopes[0]), v.union(other.slopes[1])],
         }
     }
+
+    /// Wide enough that rounding loses nothing, and turned so that the rays run upwards.
+    #[inline(always)]
+    pub fn widened(&self, course: &Course) -> Self {
+        let pad = PAD * course.size;
+        let [x, y, mut z] = self.origins;
+        let [mut u, mut v] = self.slopes;
+        if course.is_reversed {
+            (z, u, v) = (z.flipped(), u.flipped(), v.flipped());
+        }
+        Self {
+            origins: [x.widened(pad), y.widened(pad), z.widened(pad)],
+            slopes: [u, v],
+        }
+    }
 }
 
 /// What the beams of a packet have in common.
@@ -112,34 +128,27 @@ pub(super) struct BeamTest<S> {
     axes: [usize; 3],
     center: [S; 3],
     is_reversed: bool,
-    /// Least and greatest; along the main axis in the direction of the rays.
+    /// Least and greatest.
     origins: [[S; 2]; 3],
-    /// Least and greatest, for each step in the direction of the rays.
+    /// Least and greatest.
     slopes: [[S; 2]; 2],
 }
 
 impl<S> BeamTest<S> {
+    /// Of a beam that is [`Beam::widened`].
     #[inline(always)]
     pub fn new<const W: usize>(course: &Course, beam: &Beam) -> Self
     where
         S: Lanes<W>,
     {
-        let pad = PAD * course.size;
-        let [x, y, mut z] = beam.origins;
-        let [mut u, mut v] = beam.slopes;
-        if course.is_reversed {
-            (z, u, v) = (z.flipped(), u.flipped(), v.flipped());
-        }
+        let [x, y, z] = beam.origins;
+        let [u, v] = beam.slopes;
         let [a, b, c] = course.center;
         Self {
             axes: course.axes,
             center: [S::splat(a), S::splat(b), S::splat(c)],
             is_reversed: course.is_reversed,
-            origins: [
-                splat(x.widened(pad)),
-                splat(y.widened(pad)),
-                splat(z.widened(pad)),
-            ],
+            origins: [splat(x), splat(y), splat(z)],
             slopes: [splat(u), splat(v)],
         }
     }

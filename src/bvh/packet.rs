@@ -216,7 +216,10 @@ impl<const ANY: bool, const W: usize> Job<W> for Trace<'_, ANY, W> {
             return packet.live;
         }
 
-        let beam = BeamTest::<S>::new(&packet.course, &all);
+        for beam in &mut beams {
+            *beam = beam.widened(&packet.course);
+        }
+        let beam = BeamTest::<S>::new(&packet.course, &all.widened(&packet.course));
         let mut fars = [0.0; GROUPS];
         for group in 0..groups {
             fars[group] = packet.far::<S, W>(group);

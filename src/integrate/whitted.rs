@@ -159,16 +159,13 @@ impl<'a> Whitted<'a> {
         for &number in &self.scene.shining {
             let light = &self.scene.lights[number as usize];
             let count = self.samples[number as usize];
-            let bsdf = if light.is_visible() {
-                unmirrored
-            } else {
-                surface.bsdf
-            };
+            let bsdf = unmirrored.as_ref().filter(|_| light.is_visible());
+            let bsdf = bsdf.unwrap_or(&surface.bsdf);
             for j in 0..count {
                 let u = sampler.light(from.vertex, number, j, count);
                 let shadow = light
                     .sample(at.point, u)
-                    .and_then(|sample| self.direct(at, &bsdf, &view, &sample));
+                    .and_then(|sample| self.direct(at, bsdf, &view, &sample));
                 if let Some((ray, value)) = shadow {
                     work.shadow_rays.push(ray);
                     work.shadows.push(Shadow {

@@ -69,16 +69,18 @@ impl SphericalEllipse {
             to_low + low
         } + height * (height / (to_high + high));
 
-        let sin = 2.0 * radius / sum;
-        let cos = (gap / sum * (sum + 2.0 * radius) / sum).sqrt();
-        let squash = height / (to_low * to_high).sqrt() / cos;
+        let share = 1.0 / sum;
+        let sin = 2.0 * radius * share;
+        let cos = (gap * share * ((sum + 2.0 * radius) * share)).sqrt();
+        let squash = height / ((to_low * to_high).sqrt() * cos);
         // Where the bisector of the angle at the origin meets the disk.
-        let foot = low * (to_high / sum) + high * (to_low / sum);
-        let length = hypotenuse(foot, height);
+        let foot = low * (to_high * share) + high * (to_low * share);
+        let unit = 1.0 / hypotenuse(foot, height);
+        let (across, along) = (height * unit, foot * unit);
         Some(Self {
             wide: lateral.cross(toward_plane),
-            narrow: (lateral * height - toward_plane * foot) / length,
-            axis: (lateral * foot + toward_plane * height) / length,
+            narrow: lateral * across - toward_plane * along,
+            axis: lateral * along + toward_plane * across,
             cos,
             one_minus_cos: sin * sin / (1.0 + cos),
             squash: squash.min(1.0),
@@ -123,7 +125,7 @@ impl SphericalEllipse {
 fn lateral(offset: DVec3, height: f64, normal: DVec3) -> (DVec3, f64) {
     let length = offset.length();
     if length > 1e-12 * height {
-        (offset / length, length)
+        (offset * (1.0 / length), length)
     } else {
         (normal.any_orthonormal_vector(), 0.0)
     }

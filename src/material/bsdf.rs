@@ -170,12 +170,19 @@ impl Bsdf {
         self.lobes.value(&view.pair(wi), false)
     }
 
-    /// Without what mirror rays see of lights that have a surface, which would count twice.
-    pub fn without_mirrored(mut self) -> Self {
-        if let Lobes::Layered(layers) = &mut self.lobes {
-            layers.kept = layers.unmirrored;
+    /// Without what mirror rays see of lights that have a surface, which would count twice; `None` where
+    /// there is no such thing.
+    pub fn without_mirrored(&self) -> Option<Self> {
+        match &self.lobes {
+            Lobes::Phong { .. } => None,
+            Lobes::Layered(layers) => Some(Self {
+                lobes: Lobes::Layered(Layered {
+                    kept: layers.unmirrored,
+                    ..*layers
+                }),
+                ..*self
+            }),
         }
-        self
     }
 
     /// Share of the light from behind that goes on as if nothing were there, but for its colour:
