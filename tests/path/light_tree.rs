@@ -245,7 +245,6 @@ fn a_hundred_thousand_lights_are_no_burden() {
         point: Vec3::new(1.0, 2.0, 3.0),
         normal: None,
     };
-    // An even choice would need 100,000 tries for as much of the light as one lamp brings.
     let squared = |light: u32| {
         let at = bounds[light as usize].unwrap().bounds.min;
         f64::from(at.distance_squared(receiver.point))
@@ -264,5 +263,9 @@ fn a_hundred_thousand_lights_are_no_burden() {
         (mean - 1.0).abs() < 5.0 * (variance / 2_000.0).sqrt(),
         "{mean}"
     );
-    assert!(variance < 1.0, "one sample has a variance of {variance}");
+    // Of an even choice it is n Σ x² - 1, for shares x of the light.
+    let squares: f64 = (0..100_000).map(|l| (1.0 / squared(l) / all).powi(2)).sum();
+    let even = 1e5 * squares - 1.0;
+    assert!(variance < 2.0, "one sample has a variance of {variance}");
+    assert!(even > 10.0 * variance, "{even} for an even choice");
 }
