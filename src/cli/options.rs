@@ -171,6 +171,9 @@ pub struct WorkOptions {
     /// Refuse to build a tree that would take more memory than this, like 500M or 4G [default: no limit]
     #[arg(long, value_name = "BYTES", value_parser = arguments::bytes)]
     pub max_memory: Option<u64>,
+    /// Send rays out of closed meshes through their edges and vertices, and report those that meet nothing
+    #[arg(long)]
+    pub check_leaks: bool,
     /// Trace one sample of one pixel (column, row, index), print its rays in world coordinates and write no files
     #[arg(long, value_name = "X,Y,I", value_parser = arguments::sample_id)]
     pub replay: Option<SampleId>,

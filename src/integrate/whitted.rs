@@ -98,7 +98,7 @@ impl<'a> Whitted<'a> {
                     ..*from
                 };
                 total += here.weight * self.shade(&surface, &here, sampler, log);
-                straight += opacity * self.scatter(&surface, &here, pending);
+                straight += opacity * self.scatter(&surface, &here, log, pending);
             }
             weight *= straight;
             if weight.max_channel() < LEAST_WEIGHT {
@@ -192,7 +192,13 @@ impl<'a> Whitted<'a> {
     }
 
     /// Sends rays on from a mirror or from glass; returns the share that goes straight on.
-    fn scatter(&self, surface: &Surface, from: &Pending, pending: &mut Vec<Pending>) -> Rgb {
+    fn scatter(
+        &self,
+        surface: &Surface,
+        from: &Pending,
+        log: &mut RayLog,
+        pending: &mut Vec<Pending>,
+    ) -> Rgb {
         let at = &surface.interaction;
         let specular = &surface.bsdf.specular;
         let cos_o = at.shading_normal.dot(*at.wo).min(1.0);
@@ -221,6 +227,17 @@ impl<'a> Whitted<'a> {
                 .or_else(|| refract(*at.wo, *at.geometric_normal, eta));
             if let Some(beyond) = beyond.filter(|_| !specular.is_straight()) {
                 send(RayKind::Refracted, beyond, through, child(from.vertex, 3));
+            }
+        } else {
+            let bent = if specular.is_straight() {
+                Rgb::BLACK
+            } else {
+                through
+            };
+            for weight in [mirrored, bent].map(|share| from.weight * share) {
+                if weight.max_channel() >= LEAST_WEIGHT {
+                    log.cut_off(weight);
+                }
             }
         }
         if specular.is_straight() {
