@@ -2,8 +2,7 @@
 //! looked at, and written again. Nothing may panic, hang, or take memory out of proportion.
 
 use std::fs;
-use std::path::Path;
-use std::sync::LazyLock;
+use std::path::{Path, PathBuf};
 
 use halfshade::bvh::Builder;
 use halfshade::import::{ImportOptions, Imported, SceneOptions, import, import_model};
@@ -17,8 +16,12 @@ use tempfile::TempDir;
 /// Larger scenes are only read: building trees over them would be most of the time.
 const MOST_TRIANGLES: u64 = 2_000;
 
-/// A folder with what files may name.
-static FOLDER: LazyLock<TempDir> = LazyLock::new(|| {
+thread_local! {
+    /// A folder with what files may name.
+    static FOLDER: TempDir = folder();
+}
+
+fn folder() -> TempDir {
     let memory = Path::new("/dev/shm");
     let folder = if memory.is_dir() {
         tempfile::tempdir_in(memory)
@@ -29,14 +32,13 @@ static FOLDER: LazyLock<TempDir> = LazyLock::new(|| {
     let write = |name: &str, text: &str| {
         fs::write(folder.path().join(name), text).expect("a temporary file");
     };
-    write("all.obj", "mtllib all.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n");
     write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     write("a.mtl", "newmtl m\nKd 0.5 0.4 0.3\n");
     folder
-});
+}
 
-fn file(name: &str, bytes: &[u8]) -> std::path::PathBuf {
-    let path = FOLDER.path().join(name);
+fn file(name: &str, bytes: &[u8]) -> PathBuf {
+    let path = FOLDER.with(|folder| folder.path().join(name));
     fs::write(&path, bytes).expect("a temporary file");
     path
 }
@@ -53,11 +55,15 @@ pub fn model(extension: &str, bytes: &[u8]) {
 /// A library of materials, with a model that uses the names in it.
 pub fn library(bytes: &[u8]) {
     file("all.mtl", bytes);
-    let mut model = String::from("mtllib all.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n");
+    let mut model =
+        String::from("mtllib all.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n");
     for name in ["m", "a", "b", ""] {
         model += &format!("usemtl {name}\nf 1/1 2/2 3/3\n");
     }
-    look(import(&file("all.obj", model.as_bytes()), &SceneOptions::default()));
+    look(import(
+        &file("all.obj", model.as_bytes()),
+        &SceneOptions::default(),
+    ));
 }
 
 /// A scene file.
@@ -71,7 +77,10 @@ pub fn picture(extension: &str, bytes: &[u8]) {
     let path = file(&name, bytes);
     if let Ok(opened) = read_picture(&path) {
         let size = opened.picture.size;
-        assert_eq!(opened.picture.pixels.len() as u64, u64::from(size.x) * u64::from(size.y));
+        assert_eq!(
+            opened.picture.pixels.len() as u64,
+            u64::from(size.x) * u64::from(size.y)
+        );
     }
     if extension == "png" {
         library(format!("newmtl m\nmap_Kd {name}\n").as_bytes());
@@ -80,7 +89,10 @@ pub fn picture(extension: &str, bytes: &[u8]) {
 
 /// Makes a scene ready and follows some rays through it.
 fn look<E>(imported: Result<Imported, E>) {
-    let Ok(Imported { scene, settings, .. }) = imported else {
+    let Ok(Imported {
+        scene, settings, ..
+    }) = imported
+    else {
         return;
     };
     if scene.triangle_count() > MOST_TRIANGLES {
@@ -98,7 +110,9 @@ fn look<E>(imported: Result<Imported, E>) {
     }
     if let Some(placed) = scene.cameras.first() {
         let camera = prepared.camera(placed);
-        let ray = camera.rays(settings.size).at(0.5 * settings.size.as_vec2(), Default::default());
+        let ray = camera
+            .rays(settings.size)
+            .at(0.5 * settings.size.as_vec2(), Default::default());
         let sampler = Sampler::new(&settings.sampling, UVec2::ZERO, 0);
         technique.radiance(&ray, &sampler, &mut log);
     }

@@ -103,6 +103,9 @@ pub struct PictureOptions {
     /// Scattering events of a path; 1 is direct light only [default: the scene's, or 8]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_DEPTH)))]
     pub max_depth: Option<u32>,
+    /// Start shadow rays on the triangles of smooth surfaces, though facets show where light ends
+    #[arg(long)]
+    pub no_shadow_terminator: bool,
 }
 
 /// How it is sampled.
@@ -248,6 +251,7 @@ impl RenderOptions {
         put(self.sampling.pattern, &mut settings.sampling.pattern);
         put(self.sampling.target, &mut settings.sampling.target);
         put(self.sampling.seed, &mut settings.sampling.seed);
+        settings.shadow_terminator &= !self.picture.no_shadow_terminator;
         let light_samples = self.sampling.light_samples;
         settings.light_samples = light_samples.or(settings.light_samples);
     }

@@ -112,7 +112,11 @@ impl PreparedScene<'_> {
         };
         // Off the edges, where rounding may take the start to the other side of a neighbour.
         let (a, b) = (unit(2), unit(3));
-        let (a, b) = if a + b > 1.0 { (1.0 - a, 1.0 - b) } else { (a, b) };
+        let (a, b) = if a + b > 1.0 {
+            (1.0 - a, 1.0 - b)
+        } else {
+            (a, b)
+        };
         let [u, v] = [a, b].map(|weight| (0.05 + 0.85 * weight) as f32);
         let hit = Hit {
             t: 0.0,
@@ -131,7 +135,11 @@ impl PreparedScene<'_> {
         };
         let corners = self.vertices(&aimed_at);
         let k = (random(5) % 3) as usize;
-        let along = if number.is_multiple_of(4) { 0.0 } else { unit(6) };
+        let along = if number.is_multiple_of(4) {
+            0.0
+        } else {
+            unit(6)
+        };
         let target = corners[k].lerp(corners[(k + 1) % 3], along);
         let way = target - start;
         if way.dot(outward) > -1e-3 * way.length() {

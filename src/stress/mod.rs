@@ -30,7 +30,10 @@ pub enum Effort {
     /// All cases within a minute on two cores.
     Short,
     /// More rays, seeds and scales.
-    Full,
+    Full {
+        /// Rays at edges and vertices of closed meshes (G1).
+        rays: u64,
+    },
 }
 
 impl Effort {
@@ -38,7 +41,7 @@ impl Effort {
     pub fn pick<T>(self, short: T, full: T) -> T {
         match self {
             Self::Short => short,
-            Self::Full => full,
+            Self::Full { .. } => full,
         }
     }
 }
