@@ -109,6 +109,9 @@ pub struct PictureOptions {
     /// Dim light that was scattered more than once to this radiance (path); what that takes away is said
     #[arg(long, value_name = "L", value_parser = arguments::positive)]
     pub clamp: Option<f64>,
+    /// Start shadow rays on the triangles of smooth surfaces, though facets show where light ends
+    #[arg(long)]
+    pub no_shadow_terminator: bool,
 }
 
 /// How it is sampled.
@@ -177,6 +180,9 @@ pub struct WorkOptions {
     /// Refuse to build a tree that would take more memory than this, like 500M or 4G [default: no limit]
     #[arg(long, value_name = "BYTES", value_parser = arguments::bytes)]
     pub max_memory: Option<u64>,
+    /// Send rays out of closed meshes through their edges and vertices, and report those that meet nothing
+    #[arg(long)]
+    pub check_leaks: bool,
     /// Trace one sample of one pixel (column, row, index), print its rays in world coordinates and write no files
     #[arg(long, value_name = "X,Y,I", value_parser = arguments::sample_id)]
     pub replay: Option<SampleId>,
@@ -260,6 +266,7 @@ impl RenderOptions {
         put(self.sampling.pattern, &mut settings.sampling.pattern);
         put(self.sampling.target, &mut settings.sampling.target);
         put(self.sampling.seed, &mut settings.sampling.seed);
+        settings.shadow_terminator &= !self.picture.no_shadow_terminator;
         let light_samples = self.sampling.light_samples;
         settings.light_samples = light_samples.or(settings.light_samples);
     }

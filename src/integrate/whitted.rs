@@ -6,7 +6,7 @@ use crate::color::Rgb;
 use crate::interaction::Interaction;
 use crate::light::{Light, LightSample, ShadowEnd};
 use crate::material::{Bsdf, View, reflect, refract};
-use crate::math::Ray;
+use crate::math::{Ray, Vec3};
 use crate::prepare::{PreparedScene, Surface};
 use crate::sampling::Sampler;
 use crate::scene::Settings;
@@ -23,6 +23,8 @@ const LEAST_WEIGHT: f32 = 1e-5;
 pub struct Whitted<'a> {
     scene: &'a PreparedScene<'a>,
     max_depth: u32,
+    /// Whether shadow rays start on the surface that vertex normals describe.
+    smooths_shadows: bool,
     /// Per light: shadow rays per shading point.
     samples: Vec<u32>,
     /// Lights that rays can meet.
@@ -80,6 +82,7 @@ impl<'a> Whitted<'a> {
         Self {
             scene,
             max_depth: settings.max_depth,
+            smooths_shadows: settings.shadow_terminator,
             samples: scene.lights.iter().map(samples).collect(),
             visible: scene.lights.iter().filter(|l| l.is_visible()).collect(),
         }
@@ -123,7 +126,7 @@ impl<'a> Whitted<'a> {
                     ..*from
                 };
                 total += here.weight * self.shade(&surface, &here, sampler, work);
-                straight += opacity * self.scatter(&surface, &here, &mut work.pending);
+                straight += opacity * self.scatter(&surface, &here, log, &mut work.pending);
             }
             weight *= straight;
             if weight.max_channel() < LEAST_WEIGHT {
@@ -147,7 +150,10 @@ impl<'a> Whitted<'a> {
 
     /// Emitted and ambient light that leaves `surface` to the viewer; the direct light waits for shadow rays.
     fn shade(&self, surface: &Surface, from: &Pending, sampler: &Sampler, work: &mut Work) -> Rgb {
-        let at = &surface.interaction;
+        let mut at = surface.interaction;
+        if !self.smooths_shadows {
+            at.smooth_point = None;
+        }
         let view = surface.view();
         let ambient = self.scene.background.ambient * surface.material.occlusion(&surface.lookup);
         let shining =
@@ -165,7 +171,7 @@ impl<'a> Whitted<'a> {
                 let u = sampler.light(from.vertex, number, j, count);
                 let shadow = light
                     .sample(at.point, u)
-                    .and_then(|sample| self.direct(at, bsdf, &view, &sample));
+                    .and_then(|sample| self.direct(&at, bsdf, &view, &sample));
                 if let Some((ray, value)) = shadow {
                     work.shadow_rays.push(ray);
                     work.shadows.push(Shadow {
@@ -190,17 +196,20 @@ impl<'a> Whitted<'a> {
     ) -> Option<(Ray, Rgb)> {
         let cos_i = at.shading_normal.dot(*sample.wi);
         // Light from behind shows on what scatters it through; both normals must agree where it is.
-        let side = match cos_i > 0.0 {
-            true => 1.0,
-            false if bsdf.is_translucent() => -1.0,
-            false => return None,
+        let is_behind = cos_i <= 0.0;
+        if is_behind && !bsdf.is_translucent() {
+            return None;
+        }
+        let is_hidden = |direction: Vec3| match is_behind {
+            true => at.geometric_normal.dot(direction) >= 0.0,
+            false => !at.can_see(direction),
         };
-        if at.geometric_normal.dot(*sample.wi) * side <= 0.0 {
+        if is_hidden(*sample.wi) {
             return None;
         }
         // The end of the shadow ray may be below the horizon of a point that sees the centre.
         if let ShadowEnd::Point(end) = sample.shadow
-            && at.geometric_normal.dot(end - at.point) * side <= 0.0
+            && is_hidden(end - at.point)
         {
             return None;
         }
@@ -209,9 +218,11 @@ impl<'a> Whitted<'a> {
         if unshadowed.is_black() {
             return None;
         }
-        let ray = match sample.shadow {
-            ShadowEnd::Point(target) => at.spawn_ray_to(target),
-            ShadowEnd::Direction(direction) => at.spawn_ray(*direction),
+        let ray = match (sample.shadow, is_behind) {
+            (ShadowEnd::Point(target), false) => at.shadow_ray_to(target),
+            (ShadowEnd::Point(target), true) => at.spawn_ray_to(target),
+            (ShadowEnd::Direction(direction), false) => at.shadow_ray(*direction),
+            (ShadowEnd::Direction(direction), true) => at.spawn_ray(*direction),
         };
         Some((ray, unshadowed))
     }
@@ -247,7 +258,13 @@ impl<'a> Whitted<'a> {
     }
 
     /// Sends rays on from a mirror or from glass; returns the share that goes straight on.
-    fn scatter(&self, surface: &Surface, from: &Pending, pending: &mut Vec<Pending>) -> Rgb {
+    fn scatter(
+        &self,
+        surface: &Surface,
+        from: &Pending,
+        log: &mut RayLog,
+        pending: &mut Vec<Pending>,
+    ) -> Rgb {
         let at = &surface.interaction;
         let specular = &surface.bsdf.specular;
         let cos_o = at.shading_normal.dot(*at.wo).min(1.0);
@@ -276,6 +293,17 @@ impl<'a> Whitted<'a> {
                 .or_else(|| refract(*at.wo, *at.geometric_normal, eta));
             if let Some(beyond) = beyond.filter(|_| !specular.is_straight()) {
                 send(RayKind::Refracted, beyond, through, child(from.vertex, 3));
+            }
+        } else {
+            let bent = if specular.is_straight() {
+                Rgb::BLACK
+            } else {
+                through
+            };
+            for weight in [mirrored, bent].map(|share| from.weight * share) {
+                if weight.max_channel() >= LEAST_WEIGHT {
+                    log.cut_off(weight);
+                }
             }
         }
         if specular.is_straight() {

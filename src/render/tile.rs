@@ -5,7 +5,7 @@ use super::backdrop::Foreground;
 use super::stop::Stop;
 use crate::camera::{CameraRays, film_position};
 use crate::color::Rgb;
-use crate::film::{ErrorSums, Film, Pixel, RayCounts, Rect, RejectedSample, StoppedBy};
+use crate::film::{CutOff, ErrorSums, Film, Pixel, RayCounts, Rect, RejectedSample, StoppedBy};
 use crate::integrate::{CameraSample, FirstSurface, Integrator, RayLog};
 use crate::math::{Ray, UVec2, Vec2, morton_pixel};
 use crate::sampling::Sampler;
@@ -30,6 +30,7 @@ pub(super) struct Tile {
     rejected: u64,
     first_rejected: Option<RejectedSample>,
     pub rays: RayCounts,
+    cut_off: CutOff,
     /// The error of its pixels; `None` where one does not tell.
     pub error: Option<ErrorSums>,
 }
@@ -46,6 +47,7 @@ impl Tile {
             rejected: 0,
             first_rejected: None,
             rays: RayCounts::default(),
+            cut_off: CutOff::default(),
             error: None,
         }
     }
@@ -90,6 +92,7 @@ impl Tile {
         }
         self.take(job, &mut batch);
         self.rays.add(&batch.log.counts);
+        self.cut_off.add(&batch.log.cut_off);
         self.error = self.error_sums();
         done
     }
@@ -268,6 +271,7 @@ pub(super) fn assemble(job: &Job, tiles: &[Tile], stopped_by: StoppedBy) -> Film
         rejected: 0,
         first_rejected: None,
         rays: RayCounts::default(),
+        cut_off: CutOff::default(),
         stopped_by,
     };
     for tile in tiles {
@@ -282,6 +286,7 @@ pub(super) fn assemble(job: &Job, tiles: &[Tile], stopped_by: StoppedBy) -> Film
         film.rejected += tile.rejected;
         film.first_rejected = film.first_rejected.or(tile.first_rejected);
         film.rays.add(&tile.rays);
+        film.cut_off.add(&tile.cut_off);
     }
     film
 }

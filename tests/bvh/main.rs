@@ -10,5 +10,3 @@ mod instances;
 mod meshes;
 mod packets;
 mod reference;
-mod slivers;
-mod watertight;
