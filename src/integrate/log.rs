@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::account::{Account, Seen, Sight, Source};
 use crate::color::Rgb;
 use crate::film::RayCounts;
 use crate::math::Ray;
@@ -46,13 +47,15 @@ pub struct RayRecord {
     pub weight: Rgb,
 }
 
-/// Counts rays; on request keeps them.
+/// Counts rays; on request keeps them, and what else the samples tell.
 #[derive(Clone, Debug, Default)]
 pub struct RayLog {
     /// How many of which kind.
     pub counts: RayCounts,
     /// All of them in order, where somebody asked.
     pub records: Option<Vec<RayRecord>>,
+    /// What the sample tells that is being traced, where somebody asked.
+    pub account: Option<Account>,
 }
 
 impl RayLog {
@@ -73,6 +76,21 @@ impl RayLog {
         }
         if let Some(records) = &mut self.records {
             records.push(record());
+        }
+    }
+
+    /// Tells that a ray from the camera meets `sight`, which covers `share` of it. Told from front to back.
+    pub fn see(&mut self, sight: Sight, share: f32) {
+        if let Some(account) = &mut self.account {
+            account.seen.push(Seen { sight, share });
+        }
+    }
+
+    /// Tells that `weight * radiance` of the sample was given off by `source` and scattered `events` times
+    /// on its way to the camera. All that is told of a sample adds up to its radiance.
+    pub fn light(&mut self, source: Source, events: u32, weight: Rgb, radiance: Rgb) {
+        if let Some(account) = &mut self.account {
+            account.add(source, events, weight * radiance);
         }
     }
 }

@@ -1,10 +1,14 @@
 //! Techniques: from a ray to the radiance that comes back along it.
 
+mod account;
+mod aov;
 mod log;
 mod views;
 mod visibility;
 mod whitted;
 
+pub use account::{Account, LightGroups, LightPart, Seen, Sight, Source};
+pub use aov::Aov;
 pub use log::{RayKind, RayLog, RayRecord};
 pub use views::{FirstSurface, View, ViewKind};
 pub use whitted::Whitted;
@@ -20,10 +24,11 @@ use crate::scene::{IntegratorKind, Settings};
 pub trait Integrator: Sync {
     /// Radiance along `ray`, W/(m² sr), with the random numbers of `sampler`.
     ///
-    /// The rays that are traced for it are counted, and on request recorded, in `log`.
+    /// The rays that are traced for it are counted, and on request recorded, in `log`; where the log has
+    /// an account, it is told what the camera sees and where the light comes from.
     fn radiance(&self, ray: &Ray, sampler: &Sampler, log: &mut RayLog) -> Rgb;
 
-    /// What [`Self::radiance`] is along every ray that meets nothing.
+    /// What [`Self::radiance`] is along every ray that meets nothing: black where the background is transparent.
     fn background(&self) -> Rgb;
 }
 

@@ -12,7 +12,7 @@ use crate::sampling::Sampler;
 use crate::scene::Settings;
 
 use super::visibility::transmittance;
-use super::{Integrator, RayKind, RayLog, RayRecord, light_samples};
+use super::{Integrator, RayKind, RayLog, RayRecord, Sight, Source, light_samples};
 
 /// Rays that count for less than this in every channel are not followed: what is cut off is at
 /// most this share of what they would have brought back.
@@ -25,8 +25,10 @@ pub struct Whitted<'a> {
     max_depth: u32,
     /// Per light: shadow rays per shading point.
     samples: Vec<u32>,
-    /// Lights that rays can meet.
-    visible: Vec<&'a Light>,
+    /// Lights that rays can meet, with their numbers.
+    visible: Vec<(u32, &'a Light)>,
+    /// Whether the camera sees nothing where it sees the background.
+    is_transparent: bool,
 }
 
 /// A ray that waits to be followed.
@@ -38,6 +40,14 @@ struct Pending {
     depth: u32,
     /// Which vertex of the tree of rays it leads to: 1 is what the camera sees ([`child`]).
     vertex: u32,
+}
+
+/// A light whose surface a ray meets.
+struct MetLight {
+    number: u32,
+    /// Where along the ray.
+    t: f32,
+    radiance: Rgb,
 }
 
 /// The vertex that a ray leads to which leaves `vertex` by the way of `branch`, an odd number: a
@@ -55,7 +65,11 @@ impl<'a> Whitted<'a> {
             scene,
             max_depth: settings.max_depth,
             samples: scene.lights.iter().map(samples).collect(),
-            visible: scene.lights.iter().filter(|l| l.is_visible()).collect(),
+            visible: (0..)
+                .zip(&scene.lights)
+                .filter(|(_, light)| light.is_visible())
+                .collect(),
+            is_transparent: settings.transparent,
         }
     }
 
@@ -70,6 +84,9 @@ impl<'a> Whitted<'a> {
     ) -> Rgb {
         let mut total = Rgb::BLACK;
         let mut weight = from.weight;
+        // What no surface covers of the ray, whatever glass lets through.
+        let mut clear = 1.0;
+        let is_camera = from.kind == RayKind::Camera;
         let mut last: Option<Hit> = None;
         loop {
             let hit = self.scene.closest_hit(&from.ray, last.as_ref());
@@ -83,13 +100,26 @@ impl<'a> Whitted<'a> {
                 });
             }
             let passed = last.map_or(0.0, |h| h.t);
-            if let Some(radiance) = self.light_between(&from.ray, passed, hit.as_ref()) {
-                return total + weight * radiance;
+            if let Some(met) = self.light_between(&from.ray, passed, hit.as_ref()) {
+                if is_camera {
+                    log.see(Sight::Light { t: met.t }, clear);
+                }
+                log.light(Source::Light(met.number), from.depth, weight, met.radiance);
+                return total + weight * met.radiance;
             }
             let Some(hit) = hit else {
-                return total + weight * self.scene.background.radiance;
+                if is_camera && self.is_transparent {
+                    weight = weight - Rgb::splat(clear);
+                }
+                let radiance = self.scene.background.radiance;
+                log.light(Source::Background, from.depth, weight, radiance);
+                return total + weight * radiance;
             };
             let opacity = self.scene.visibility(&from.ray, &hit);
+            if is_camera && opacity > 0.0 {
+                log.see(Sight::Surface(hit), clear * opacity);
+            }
+            clear *= 1.0 - opacity;
             let mut straight = Rgb::splat(1.0 - opacity);
             if opacity > 0.0 {
                 let surface = self.scene.surface(&from.ray, &hit);
@@ -108,15 +138,22 @@ impl<'a> Whitted<'a> {
         }
     }
 
-    /// Radiance of the nearest light whose surface `ray` meets beyond `passed` and before `hit`.
-    fn light_between(&self, ray: &Ray, passed: f32, hit: Option<&Hit>) -> Option<Rgb> {
+    /// The nearest light whose surface `ray` meets beyond `passed` and before `hit`.
+    fn light_between(&self, ray: &Ray, passed: f32, hit: Option<&Hit>) -> Option<MetLight> {
         let end = hit.map_or(ray.t_max, |h| h.t);
+        let meet = |&(number, light): &(u32, &Light)| {
+            let (t, radiance) = light.emitted(ray)?;
+            Some(MetLight {
+                number,
+                t,
+                radiance,
+            })
+        };
         self.visible
             .iter()
-            .filter_map(|light| light.emitted(ray))
-            .filter(|(t, _)| *t > passed && *t < end)
-            .min_by(|(a, _), (b, _)| a.total_cmp(b))
-            .map(|(_, radiance)| radiance)
+            .filter_map(meet)
+            .filter(|met| met.t > passed && met.t < end)
+            .min_by(|a, b| a.t.total_cmp(&b.t))
     }
 
     /// Emitted, ambient and direct light that leaves `surface` to the viewer.
@@ -124,8 +161,11 @@ impl<'a> Whitted<'a> {
         let at = &surface.interaction;
         let cos_o = at.shading_normal.dot(*at.wo);
         let ambient = self.scene.background.ambient * surface.material.occlusion(&surface.lookup);
-        let mut total =
-            surface.material.emitted(&surface.lookup) + ambient * surface.bsdf.ambient(cos_o);
+        let emitted = surface.material.emitted(&surface.lookup);
+        let ambient = ambient * surface.bsdf.ambient(cos_o);
+        log.light(Source::Surface, from.depth, from.weight, emitted);
+        log.light(Source::Background, from.depth + 1, from.weight, ambient);
+        let mut total = emitted + ambient;
         if from.depth >= self.max_depth {
             return total;
         }
@@ -145,7 +185,9 @@ impl<'a> Whitted<'a> {
                     sum += self.direct(at, &bsdf, &sample, from, number, log);
                 }
             }
-            total += sum / count as f32;
+            let mean = sum / count as f32;
+            log.light(Source::Light(number), from.depth + 1, from.weight, mean);
+            total += mean;
         }
         total
     }
@@ -249,6 +291,10 @@ impl Integrator for Whitted<'_> {
     }
 
     fn background(&self) -> Rgb {
-        self.scene.background.radiance
+        if self.is_transparent {
+            Rgb::BLACK
+        } else {
+            self.scene.background.radiance
+        }
     }
 }

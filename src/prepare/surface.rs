@@ -106,6 +106,11 @@ impl<'a> PreparedScene<'a> {
         }
     }
 
+    /// The number of the instance of the scene that `hit` is on.
+    pub fn instance(&self, hit: &Hit) -> u32 {
+        self.locate(hit).instance_number
+    }
+
     fn material(&self, at: &Located) -> &'a Material {
         &self.scene.materials[at.instance.material.0 as usize]
     }

@@ -4,8 +4,9 @@ use super::Job;
 use super::backdrop::Foreground;
 use super::stop::Stop;
 use crate::camera::{CameraRays, film_position};
+use crate::color::Rgb;
 use crate::film::{ErrorSums, Film, Pixel, RayCounts, Rect, RejectedSample, StoppedBy};
-use crate::integrate::{FirstSurface, Integrator, RayLog};
+use crate::integrate::{Account, Aov, FirstSurface, Integrator, RayLog, Sight, Source};
 use crate::math::{Ray, UVec2, Vec2};
 use crate::sampling::Sampler;
 
@@ -18,6 +19,9 @@ const SAMPLES_PER_LOOK: u64 = 8;
 /// Numbers of samples of the two halves of a pixel.
 pub(super) type Halves = [u32; 2];
 
+/// Per pixel the instances that were seen, and the sums of their shares over the samples of each half.
+type Objects = Vec<Vec<(u32, [f64; 2])>>;
+
 pub(super) struct Tile {
     rect: Rect,
     pub pixels: Vec<Pixel>,
@@ -25,7 +29,9 @@ pub(super) struct Tile {
     pub taken: Vec<Halves>,
     /// How many there are to be.
     pub goal: Vec<Halves>,
-    layers: Vec<Vec<[f64; 3]>>,
+    /// Per layer and pixel: the sums over the samples of each half.
+    layers: Vec<Vec<[[f64; 2]; 3]>>,
+    objects: Objects,
     rejected: u64,
     first_rejected: Option<RejectedSample>,
     pub rays: RayCounts,
@@ -34,14 +40,18 @@ pub(super) struct Tile {
 }
 
 impl Tile {
-    fn new(rect: Rect, layers: usize) -> Self {
+    fn new(rect: Rect, layers: &[Aov]) -> Self {
         let area = rect.area() as usize;
         Self {
             rect,
             pixels: vec![Pixel::default(); area],
             taken: vec![[0; 2]; area],
             goal: vec![[0; 2]; area],
-            layers: vec![vec![[0.0; 3]; area]; layers],
+            layers: vec![vec![[[0.0; 2]; 3]; area]; layers.len()],
+            objects: match layers.contains(&Aov::Objects) {
+                true => vec![Vec::new(); area],
+                false => Vec::new(),
+            },
             rejected: 0,
             first_rejected: None,
             rays: RayCounts::default(),
@@ -62,11 +72,15 @@ impl Tile {
         job: &Job,
         integrator: &dyn Integrator,
         foreground: &Foreground,
+        account: Option<&Account>,
         stop: &Stop,
     ) -> u64 {
         let sets = job.settings.sampling.pattern.sets();
         let rays = job.camera.rays(job.settings.size);
-        let mut log = RayLog::default();
+        let mut log = RayLog {
+            account: account.cloned(),
+            ..RayLog::default()
+        };
         let mut done = 0;
         'pixels: for (i, pixel) in self.rect.pixels().enumerate() {
             let is_beyond = foreground.is_beyond(pixel);
@@ -77,16 +91,22 @@ impl Tile {
                     }
                     let index = sample * sets + half as u32;
                     let sample = (!is_beyond).then(|| camera_sample(job, &rays, pixel, index));
+                    if let Some(account) = &mut log.account {
+                        account.clear();
+                    }
                     let value = match &sample {
                         Some((ray, sampler)) => integrator.radiance(ray, sampler, &mut log),
                         None => {
                             log.counts.camera += 1;
-                            integrator.background()
+                            let radiance = integrator.background();
+                            log.light(Source::Background, 0, Rgb::WHITE, radiance);
+                            radiance
                         }
                     };
                     if self.pixels[i].add_sample(half, value) {
-                        if let Some((ray, _)) = &sample {
-                            self.add_layers(job, i, ray);
+                        if let Some(account) = &log.account {
+                            let ray = sample.as_ref().map(|(ray, _)| ray);
+                            self.add_layers(job, [i, half], ray, account);
                         }
                     } else {
                         self.rejected += 1;
@@ -103,15 +123,33 @@ impl Tile {
         done
     }
 
-    /// Adds what the layers show along `ray` to the tile's pixel number `i`.
-    fn add_layers(&mut self, job: &Job, i: usize, ray: &Ray) {
-        if job.layers.is_empty() {
-            return;
+    /// Adds what `account` tells of a sample along `ray` to the layers, at a pixel's number and half; `None`
+    /// for a ray that is known to meet nothing.
+    fn add_layers(
+        &mut self,
+        job: &Job,
+        [i, half]: [usize; 2],
+        ray: Option<&Ray>,
+        account: &Account,
+    ) {
+        let first = account.seen.first().map(|seen| seen.sight);
+        let first = ray.map(|ray| FirstSurface::of(job.scene, ray, first));
+        for (layer, aov) in self.layers.iter_mut().zip(&job.layers) {
+            let value = match *aov {
+                Aov::View(kind) => first.as_ref().map_or([0.0; 3], |first| first.value(kind)),
+                Aov::Coverage => [account.coverage(); 3],
+                Aov::Light(part) => account.light(part).channels(),
+                Aov::Objects => continue,
+            };
+            for (sums, value) in layer[i].iter_mut().zip(value) {
+                sums[half] += f64::from(value);
+            }
         }
-        let first = FirstSurface::along(job.scene, ray);
-        for (layer, &kind) in self.layers.iter_mut().zip(&job.layers) {
-            for (sum, value) in layer[i].iter_mut().zip(first.value(kind)) {
-                *sum += f64::from(value);
+        if let Some(objects) = self.objects.get_mut(i) {
+            for seen in &account.seen {
+                if let Sight::Surface(hit) = &seen.sight {
+                    add_share(objects, job.scene.instance(hit), half, seen.share);
+                }
             }
         }
     }
@@ -123,6 +161,15 @@ impl Tile {
         }
         Some(sums)
     }
+}
+
+fn add_share(objects: &mut Vec<(u32, [f64; 2])>, instance: u32, half: usize, share: f32) {
+    let at = objects.iter().position(|(known, _)| *known == instance);
+    let at = at.unwrap_or_else(|| {
+        objects.push((instance, [0.0; 2]));
+        objects.len() - 1
+    });
+    objects[at].1[half] += f64::from(share);
 }
 
 /// Sample `index` of `pixel`: its ray from the camera, and its other numbers.
@@ -155,7 +202,7 @@ pub(super) fn tiles(job: &Job) -> Vec<Tile> {
                 width: TILE.min(crop.x + crop.width - x),
                 height: TILE.min(crop.y + crop.height - y),
             };
-            Tile::new(rect, job.layers.len())
+            Tile::new(rect, &job.layers)
         })
         .collect()
 }
@@ -177,6 +224,10 @@ pub(super) fn assemble(job: &Job, tiles: &[Tile], stopped_by: StoppedBy) -> Film
         rect: crop,
         pixels: vec![Pixel::default(); area],
         layers: vec![vec![[0.0; 3]; area]; job.layers.len()],
+        objects: match job.layers.contains(&Aov::Objects) {
+            true => vec![Vec::new(); area],
+            false => Vec::new(),
+        },
         rejected: 0,
         first_rejected: None,
         rays: RayCounts::default(),
@@ -185,10 +236,14 @@ pub(super) fn assemble(job: &Job, tiles: &[Tile], stopped_by: StoppedBy) -> Film
     for tile in tiles {
         for (i, pixel) in tile.rect.pixels().enumerate() {
             let to = ((pixel.y - crop.y) * crop.width + pixel.x - crop.x) as usize;
-            film.pixels[to] = tile.pixels[i];
-            let taken = tile.pixels[i].count().max(1) as f64;
+            let pixel = &tile.pixels[i];
+            film.pixels[to] = *pixel;
+            let mean = |sums: [f64; 2]| pixel.mean_of_sums(sums) as f32;
             for (layer, from) in film.layers.iter_mut().zip(&tile.layers) {
-                layer[to] = from[i].map(|sum| (sum / taken) as f32);
+                layer[to] = from[i].map(mean);
+            }
+            if let Some(seen) = tile.objects.get(i) {
+                film.objects[to] = seen.iter().map(|(id, sums)| (*id, mean(*sums))).collect();
             }
         }
         film.rejected += tile.rejected;

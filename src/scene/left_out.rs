@@ -13,6 +13,8 @@ pub struct Needs {
     pub normals: bool,
     /// Their colours.
     pub albedo: bool,
+    /// Their first texture coordinates, whatever textures there are.
+    pub uv: bool,
 }
 
 impl Needs {
@@ -24,6 +26,7 @@ impl Needs {
                 scattering: true,
                 normals: true,
                 albedo: true,
+                uv: false,
             },
             IntegratorKind::Normal => Self {
                 normals: true,
@@ -43,6 +46,7 @@ impl Needs {
             scattering: self.scattering || other.scattering,
             normals: self.normals || other.normals,
             albedo: self.albedo || other.albedo,
+            uv: self.uv || other.uv,
         }
     }
 }

@@ -96,6 +96,8 @@ pub struct Settings {
     pub max_depth: u32,
     /// Shadow rays per shading point, in place of what each light says.
     pub light_samples: Option<u32>,
+    /// Whether the camera sees nothing where it sees the background: the picture is what is before it.
+    pub transparent: bool,
 }
 
 impl Default for Settings {
@@ -106,6 +108,7 @@ impl Default for Settings {
             integrator: IntegratorKind::Whitted,
             max_depth: 8,
             light_samples: None,
+            transparent: false,
         }
     }
 }

@@ -31,7 +31,7 @@ const ASKS: &[Ask] = &[
     },
     Ask {
         integrator: "normal",
-        layers: &[ViewKind::Albedo, ViewKind::Depth],
+        layers: &[ViewKind::Albedo, ViewKind::Depth, ViewKind::Uv],
     },
 ];
 
