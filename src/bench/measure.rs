@@ -28,6 +28,8 @@ pub struct Plan {
     pub widths: Vec<Width>,
     /// Each number of threads builds and traces.
     pub threads: Vec<usize>,
+    /// Whether neighbouring rays are traced together, as the renderer does; else one by one.
+    pub together: bool,
     /// Times that everything is measured; small trees are built more often.
     pub repeats: usize,
 }
@@ -196,7 +198,7 @@ fn trace_all(trees: &[Bvh], sets: &[RaySet], plan: &Plan, pools: &[ThreadPool]) 
         for (s, set) in sets.iter().enumerate() {
             for (t, pool) in pools.iter().enumerate() {
                 for (k, tree) in trees.iter().enumerate() {
-                    times[k][t][s].push(pool.install(|| trace(tree, set)));
+                    times[k][t][s].push(pool.install(|| trace(tree, set, plan.together)));
                 }
             }
         }
@@ -205,15 +207,26 @@ fn trace_all(trees: &[Bvh], sets: &[RaySet], plan: &Plan, pools: &[ThreadPool]) 
 }
 
 /// Traces all rays of `set` on the current thread pool.
-fn trace(tree: &Bvh, set: &RaySet) -> Elapsed {
+fn trace(tree: &Bvh, set: &RaySet, together: bool) -> Elapsed {
     let stopwatch = Stopwatch::start();
-    set.rays.par_chunks(CHUNK).for_each(|rays| match set.query {
-        Query::Closest => rays.iter().for_each(|ray| {
+    let chunks = set.rays.par_chunks(CHUNK);
+    chunks.for_each(|rays| match (set.query, together) {
+        (Query::Closest, false) => rays.iter().for_each(|ray| {
             black_box(tree.closest_hit(ray));
         }),
-        Query::Any => rays.iter().for_each(|ray| {
+        (Query::Any, false) => rays.iter().for_each(|ray| {
             black_box(tree.any_hit(ray));
         }),
+        (Query::Closest, true) => {
+            let mut hits = vec![None; rays.len()];
+            tree.closest_hits(rays, &mut hits);
+            black_box(hits);
+        }
+        (Query::Any, true) => {
+            let mut blocked = vec![false; rays.len()];
+            tree.any_hits(rays, &mut blocked);
+            black_box(blocked);
+        }
     });
     stopwatch.read()
 }

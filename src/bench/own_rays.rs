@@ -6,7 +6,7 @@ use crate::bvh::{Builder, Bvh, Hit};
 use crate::camera::{Camera, film_position};
 use crate::import::scene_file::framing_camera;
 use crate::interaction::{Interaction, rounding_error};
-use crate::math::{Aabb, DVec3, Frame, Ray, UVec2, UnitVec3, Vec2, Vec3};
+use crate::math::{Aabb, DVec3, Frame, Ray, UVec2, UnitVec3, Vec2, Vec3, morton_pixel};
 use crate::sampling::{Pattern, Sampler, SamplingConfig, square_to_cone, square_to_disk};
 
 use super::{Query, RaySet, Triangles};
@@ -26,7 +26,7 @@ enum Use {
     OriginZ,
 }
 
-/// The rays of a camera with `side` × `side` pixels that frames `triangles`, row by row
+/// The rays of a camera with `side` × `side` pixels that frames `triangles`, neighbours near each other
 /// (`primary`); from what they hit, one to a point of a disk light each (`shadow`, any hit) and
 /// one after a cosine-distributed bounce (`diffuse`); and `side`² rays from and to anywhere in the
 /// mesh's box (`random`).
@@ -37,30 +37,32 @@ pub fn own_rays(triangles: &Triangles, side: u32) -> Option<[RaySet; 4]> {
     let bounds = tree.bounds();
     let camera = camera(&bounds)?;
     let light = DiskLight::over(&bounds)?;
-    let pixel = |i: u32| UVec2::new(i % side, i / side);
+    let codes = 0..side.next_power_of_two().pow(2);
+    let pixels = codes.map(morton_pixel).filter(|p| p.x < side && p.y < side);
+    let pixels: Vec<UVec2> = pixels.collect();
     let rays = camera.rays(UVec2::splat(side));
-    let primary: Vec<Ray> = (0..side * side)
-        .into_par_iter()
-        .map(|i| {
-            let film = film_position(pixel(i), Vec2::splat(0.5));
+    let primary: Vec<Ray> = pixels
+        .par_iter()
+        .map(|&pixel| {
+            let film = film_position(pixel, Vec2::splat(0.5));
             rays.at(film, Vec2::ZERO)
         })
         .collect();
     let (shadow, diffuse) = primary
         .par_iter()
-        .enumerate()
-        .filter_map(|(i, ray)| {
+        .zip(&pixels)
+        .filter_map(|(ray, &pixel)| {
             let hit = tree.closest_hit(ray)?;
             let surface = surface(triangles, ray, &hit)?;
-            let numbers = numbers(pixel(i as u32));
+            let numbers = numbers(pixel);
             let to_light = surface.spawn_ray_to(light.point(numbers(Use::OnLight)));
             let bounce = cosine_direction(surface.geometric_normal, numbers(Use::OffSurface));
             Some((to_light, surface.spawn_ray(bounce)))
         })
         .unzip();
-    let random = (0..side * side)
-        .into_par_iter()
-        .map(|i| random_ray(&bounds, numbers(pixel(i))))
+    let random = pixels
+        .par_iter()
+        .map(|&pixel| random_ray(&bounds, numbers(pixel)))
         .collect();
     let set = |name: &str, query, rays| RaySet {
         name: name.to_owned(),

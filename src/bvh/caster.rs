@@ -97,10 +97,8 @@ impl Caster {
         let length = size[main];
         let least = LEAST_SLOPE * length;
         // Written so that a NaN is not ordinary.
-        let ordinary = ORDINARY_LENGTH.contains(&length)
-            && (size[0] >= least && size[1] >= least && size[2] >= least)
-            && all_within(origin, ORDINARY_COORDINATE)
-            && reach <= ORDINARY_COORDINATE;
+        let ordinary = is_ordinary(origin, length, reach)
+            && (size[0] >= least && size[1] >= least && size[2] >= least);
         let slopes = if ordinary {
             Slopes {
                 direction,
@@ -145,11 +143,10 @@ impl Caster {
     #[inline(always)]
     pub fn window(&self, t_min: f32, t_max: f32) -> Window {
         let least = t_min * (1.0 - RANGE_PAD);
-        let start = least * self.direction[2] - TINY.copysign(self.direction[2]);
         let mut window = Window {
             near: self.distance(least) - TINY,
             far: 0.0,
-            depth: [start; 2],
+            depth: [first_depth(t_min, self.direction[2]); 2],
         };
         self.narrow(&mut window, t_max);
         window
@@ -161,7 +158,7 @@ impl Caster {
         let most = t_max * (1.0 + RANGE_PAD);
         let main = self.direction[2];
         window.far = self.distance(most) + TINY;
-        window.depth[usize::from(main > 0.0)] = most * main + TINY.copysign(main);
+        window.depth[usize::from(main > 0.0)] = last_depth(t_max, main);
     }
 
     #[inline(always)]
@@ -178,6 +175,32 @@ impl Caster {
     pub fn exact(&self) -> ExactRay {
         ExactRay::new(self.origin, self.direction)
     }
+}
+
+/// Depth before which no hit beyond `t_min` is, for a ray whose main direction component is `main`.
+#[inline(always)]
+pub(super) fn first_depth(t_min: f32, main: f32) -> f32 {
+    t_min * (1.0 - RANGE_PAD) * main - TINY.copysign(main)
+}
+
+/// Depth behind which no hit before `t_max` is.
+#[inline(always)]
+pub(super) fn last_depth(t_max: f32, main: f32) -> f32 {
+    t_max * (1.0 + RANGE_PAD) * main + TINY.copysign(main)
+}
+
+/// The axis that [`Caster`] takes as the main one.
+#[inline(always)]
+pub(super) fn main_axis(direction: [f32; 3]) -> usize {
+    longest(per_axis(|k| direction[k].abs()))
+}
+
+/// Whether `direction`, whose main component is `main`, and `origin` are far from all overflow.
+#[inline(always)]
+pub(super) fn is_ordinary(origin: [f32; 3], main: f32, reach: f32) -> bool {
+    ORDINARY_LENGTH.contains(&main.abs())
+        && all_within(origin, ORDINARY_COORDINATE)
+        && reach <= ORDINARY_COORDINATE
 }
 
 /// A direction whose reciprocals and their products with coordinates are finite.
@@ -222,10 +245,10 @@ fn per_axis<T>(f: impl Fn(usize) -> T) -> [T; 3] {
 }
 
 /// By main axis: the second, the third and the main axis.
-const AXES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
+pub(super) const AXES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
 
 #[inline(always)]
-fn turned(v: [f32; 3], axes: [usize; 3]) -> [f32; 3] {
+pub(super) fn turned(v: [f32; 3], axes: [usize; 3]) -> [f32; 3] {
     [v[axes[0]], v[axes[1]], v[axes[2]]]
 }
 

@@ -47,16 +47,16 @@ impl<S> Depth<S> {
         }
     }
 
-    /// Which crossings are not in the window for certain. The sign of A is certain beyond 8e.
+    /// Which crossings are not at `depths` for certain. The sign of A is certain beyond 8e.
     #[inline(always)]
-    fn certainly_outside<const W: usize>(&self, window: &Window) -> u32
+    fn certainly_outside<const W: usize>(&self, [least, most]: [S; 2]) -> u32
     where
         S: Lanes<W>,
     {
         let twice_error = self.error.add(self.error);
-        let (value, error) = self.beyond(S::splat(window.depth[0]), twice_error);
+        let (value, error) = self.beyond(least, twice_error);
         let before = error.lt(S::splat(0.0).sub(value));
-        let (value, error) = self.beyond(S::splat(window.depth[1]), twice_error);
+        let (value, error) = self.beyond(most, twice_error);
         (before | error.lt(value)) & twice_error.lt(self.area)
     }
 
@@ -81,11 +81,15 @@ impl<S> Depth<S> {
     }
 }
 
-/// A ray's constants for the triangle filter, in vectors.
+/// The constants for the triangle filter, in vectors: of one ray for several triangles, or of several rays
+/// that have their order of axes in common.
 pub(super) struct Filter<S> {
-    axes: [usize; 3],
-    origin: [S; 3],
-    shear: [S; 2],
+    /// Second, third and main axis.
+    pub axes: [usize; 3],
+    /// Origin, in the order `axes`.
+    pub origin: [S; 3],
+    /// Slopes of the two lesser axes along the main one, each rounded twice.
+    pub shear: [S; 2],
 }
 
 impl<S> Filter<S> {
@@ -101,8 +105,27 @@ impl<S> Filter<S> {
         }
     }
 
-    /// The triangles of `block` that are not certain to be missed: a superset of those that
-    /// [`ExactRay::cross`](super::triangle::ExactRay::cross) accepts within the window.
+    /// The triangles of `block` that [`Filter::candidates`] are.
+    #[inline(always)]
+    pub fn test<const W: usize>(&self, block: &Block<W>, count: u32, window: &Window) -> u32
+    where
+        S: Lanes<W>,
+    {
+        let [x, y, z] = self.axes;
+        let [a, b, c] = &block.corners;
+        let corners = [
+            [S::load(&a[x]), S::load(&a[y]), S::load(&a[z])],
+            [S::load(&b[x]), S::load(&b[y]), S::load(&b[z])],
+            [S::load(&c[x]), S::load(&c[y]), S::load(&c[z])],
+        ];
+        let depths = [S::splat(window.depth[0]), S::splat(window.depth[1])];
+        self.candidates(&corners, depths, u32::MAX >> (32 - count))
+    }
+
+    /// Those of the lanes in `among` whose ray is not certain to miss its triangle: a superset of those that
+    /// [`ExactRay::cross`](super::triangle::ExactRay::cross) accepts at these depths.
+    ///
+    /// `corners` have their coordinates in the order `axes`.
     ///
     /// The same sheared edge functions as there, in `f32`. With R the largest sheared and Z
     /// the largest main coordinate, each sheared coordinate is off by at most 2uR + 5uZ, an
@@ -110,13 +133,18 @@ impl<S> Filter<S> {
     /// e = 24u(R + 5uZ)(R + Z), is more. A triangle is out where one edge function is certainly
     /// negative and another certainly positive. A NaN makes nothing certain.
     #[inline(always)]
-    pub fn test<const W: usize>(&self, block: &Block<W>, count: u32, window: &Window) -> u32
+    pub fn candidates<const W: usize>(
+        &self,
+        corners: &[[S; 3]; 3],
+        depths: [S; 2],
+        among: u32,
+    ) -> u32
     where
         S: Lanes<W>,
     {
-        let a = self.shear(&block.corners[0]);
-        let b = self.shear(&block.corners[1]);
-        let c = self.shear(&block.corners[2]);
+        let a = self.shear(&corners[0]);
+        let b = self.shear(&corners[1]);
+        let c = self.shear(&corners[2]);
         let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
 
         let x = a[0].max_abs(b[0]).max_abs(c[0]);
@@ -129,25 +157,25 @@ impl<S> Filter<S> {
             .mul_add(r.add(z), S::splat(f32::MIN_POSITIVE));
         let minus_error = S::splat(0.0).sub(error);
         let (least, most) = (u.min(v).min(w), u.max(v).max(w));
-        let lanes = !(least.lt(minus_error) & error.lt(most)) & (u32::MAX >> (32 - count));
+        let lanes = !(least.lt(minus_error) & error.lt(most)) & among;
         if lanes == 0 {
             return 0;
         }
 
         let depth = Depth::new([u, v, w], [a[2], b[2], c[2]], error, z);
-        lanes & !depth.certainly_outside(window)
+        lanes & !depth.certainly_outside(depths)
     }
 
-    /// One corner of each triangle, moved so that the ray starts at the origin and sheared so
+    /// A corner, moved so that the ray starts at the origin and sheared so
     /// that it runs along the last axis.
     #[inline(always)]
-    fn shear<const W: usize>(&self, points: &[[f32; W]; 3]) -> [S; 3]
+    fn shear<const W: usize>(&self, point: &[S; 3]) -> [S; 3]
     where
         S: Lanes<W>,
     {
-        let z = S::load(&points[self.axes[2]]).sub(self.origin[2]);
-        let x = S::load(&points[self.axes[0]]).sub(self.origin[0]);
-        let y = S::load(&points[self.axes[1]]).sub(self.origin[1]);
+        let z = point[2].sub(self.origin[2]);
+        let x = point[0].sub(self.origin[0]);
+        let y = point[1].sub(self.origin[1]);
         [
             z.neg_mul_add(self.shear[0], x),
             z.neg_mul_add(self.shear[1], y),

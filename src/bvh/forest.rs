@@ -48,6 +48,30 @@ impl Tracer {
         }
     }
 
+    /// As [`Bvh::closest_hits`]; through instances rays go one by one.
+    pub fn closest_hits(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
+        match self {
+            Self::Flat(tree) => tree.closest_hits(rays, hits),
+            Self::Instanced(forest) => {
+                for (ray, hit) in rays.iter().zip(hits) {
+                    *hit = forest.closest_hit(ray);
+                }
+            }
+        }
+    }
+
+    /// As [`Bvh::any_hits`]; through instances rays go one by one.
+    pub fn any_hits(&self, rays: &[Ray], blocked: &mut [bool]) {
+        match self {
+            Self::Flat(tree) => tree.any_hits(rays, blocked),
+            Self::Instanced(forest) => {
+                for (ray, blocked) in rays.iter().zip(blocked) {
+                    *blocked = forest.any_hit(ray);
+                }
+            }
+        }
+    }
+
     /// As [`Bvh::any_hit`].
     pub fn any_hit(&self, ray: &Ray) -> bool {
         match self {

@@ -45,6 +45,14 @@ pub(super) struct Search {
 }
 
 impl Search {
+    /// Of no ray.
+    pub const NOWHERE: Self = Self {
+        t_min: 0.0,
+        t_best: 0.0,
+        key_best: 0,
+        hit: None,
+    };
+
     /// Everything in `t_min < t < t_max` that is not behind the origin.
     pub fn new(t_min: f32, t_max: f32) -> Self {
         Self {

@@ -5,6 +5,7 @@
 //! (`triangle`): trees and vector instructions only decide what need not be looked at, and
 //! `caster` shows why they never decide wrongly.
 
+mod beam;
 mod build;
 mod caster;
 mod count;
@@ -12,6 +13,7 @@ mod filter;
 mod forest;
 mod hit;
 mod layout;
+mod packet;
 mod simd;
 mod stats;
 mod traverse;

@@ -187,7 +187,7 @@ impl Walk {
 ///
 /// Where any hit will do (`ANY`) the order matters little: only the first two are sorted.
 #[inline(always)]
-fn nearest_child<S, const ANY: bool, const W: usize>(
+pub(super) fn nearest_child<S, const ANY: bool, const W: usize>(
     node: &Node<W>,
     mask: u32,
     enter: S,

@@ -6,6 +6,7 @@ use super::count::{Counter, Silent, TraversalCounts};
 use super::filter::Filter;
 use super::hit::{Hit, Search, key};
 use super::layout::{Block, ChildRef, Node, Tree};
+use super::packet::{SIZE, Trace};
 use super::simd::{Job, Lanes, Level, Run, prefetch};
 use super::stats::TreeStats;
 use super::traverse::{Leaves, Stop, Walk};
@@ -39,6 +40,9 @@ impl Width {
         }
     }
 }
+
+/// Fewer rays are traced one by one.
+const LEAST_TOGETHER: usize = 4;
 
 #[derive(Debug, PartialEq)]
 enum Body {
@@ -123,6 +127,61 @@ impl Bvh {
     /// Whether there is a hit that `accept` does not turn down.
     pub fn any_hit_if(&self, ray: &Ray, accept: impl Fn(&Hit) -> bool) -> bool {
         self.search::<true, _>(ray, &accept, &mut Silent).is_some()
+    }
+
+    /// [`Bvh::closest_hit`] of each of `rays`, into `hits`, which is as long.
+    ///
+    /// Quicker than one by one where neighbours in `rays` run nearly the same way.
+    pub fn closest_hits(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
+        self.search_all::<false>(rays, |i, hit| hits[i] = hit);
+    }
+
+    /// [`Bvh::any_hit`] of each of `rays`, into `blocked`, which is as long. As for [`Bvh::closest_hits`].
+    pub fn any_hits(&self, rays: &[Ray], blocked: &mut [bool]) {
+        self.search_all::<true>(rays, |i, hit| blocked[i] = hit.is_some());
+    }
+
+    fn search_all<const ANY: bool>(&self, rays: &[Ray], mut found: impl FnMut(usize, Option<Hit>)) {
+        for (number, rays) in rays.chunks(SIZE).enumerate() {
+            let first = number * SIZE;
+            let mut searches = [const { Search::NOWHERE }; SIZE];
+            for (search, ray) in searches.iter_mut().zip(rays) {
+                *search = Search::new(ray.t_min, ray.t_max);
+            }
+            let mut rest = match &self.body {
+                Body::Eight(tree) => self.search_together::<ANY, 8>(tree, rays, &mut searches),
+                Body::Sixteen(tree) => self.search_together::<ANY, 16>(tree, rays, &mut searches),
+            };
+            for (i, (ray, search)) in rays.iter().zip(&mut searches).enumerate() {
+                if rest & 1 != 0 {
+                    self.cast::<ANY, _>(ray, search, 0, &|_: &Hit| true, &mut Silent);
+                }
+                rest >>= 1;
+                found(first + i, search.hit);
+            }
+        }
+    }
+
+    /// The rays whose search is to be gone on with one by one, a bit for each.
+    #[inline(always)]
+    fn search_together<const ANY: bool, const W: usize>(
+        &self,
+        tree: &Tree<W>,
+        rays: &[Ray],
+        searches: &mut [Search],
+    ) -> u64
+    where
+        Level: Run<W>,
+    {
+        if tree.nodes.is_empty() || rays.len() < LEAST_TOGETHER {
+            return u64::MAX;
+        }
+        self.level.run(Trace::<ANY, W> {
+            tree,
+            reach: self.reach,
+            rays,
+            searches,
+        })
     }
 
     /// [`Bvh::closest_hit`], adding to `counts` what it looked at.

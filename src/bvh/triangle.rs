@@ -129,6 +129,109 @@ impl ExactRay {
     }
 }
 
+/// [`ExactRay::cross`] for `W` rays at once, each with the same result, bit for bit.
+pub(super) struct ExactRays<'a, const W: usize> {
+    /// As in [`ExactRay::new`], by axis and by ray.
+    pub origin: [&'a [f32; W]; 3],
+    /// See `origin`.
+    pub direction: [&'a [f32; W]; 3],
+}
+
+/// Crossings of `W` rays.
+pub(super) struct Crossings<const W: usize> {
+    pub t: [f32; W],
+    pub u: [f32; W],
+    pub v: [f32; W],
+    /// A bit for each ray that crosses.
+    pub is_hit: u32,
+    /// A bit for each ray that needs [`ExactRay::cross`]: too close to an edge, or a triangle seen edge-on.
+    pub is_delicate: u32,
+}
+
+impl<const W: usize> ExactRays<'_, W> {
+    /// Where the rays cross the triangle with these corners.
+    #[inline(always)]
+    pub fn cross(&self, corners: &[[f32; 3]; 3]) -> Crossings<W> {
+        let [a, b, c] = corners;
+        let (mut t, mut u, mut v) = ([0.0; W], [0.0; W], [0.0; W]);
+        let (mut hit, mut delicate) = ([0u32; W], [0u32; W]);
+        // One straight run of arithmetic without a branch or a call, which compiles to vectors. It is what
+        // `ExactRay` does, in the same order.
+        for i in 0..W {
+            let (ox, oy, oz) = (
+                f64::from(self.origin[0][i]),
+                f64::from(self.origin[1][i]),
+                f64::from(self.origin[2][i]),
+            );
+            let (dx, dy, dz) = (
+                f64::from(self.direction[0][i]),
+                f64::from(self.direction[1][i]),
+                f64::from(self.direction[2][i]),
+            );
+            let (shear_x, shear_y) = (dx / dz, dy / dz);
+            let (az, bz, cz) = (
+                f64::from(a[2]) - oz,
+                f64::from(b[2]) - oz,
+                f64::from(c[2]) - oz,
+            );
+            let (ax, bx, cx) = (
+                (f64::from(a[0]) - ox) - az * shear_x,
+                (f64::from(b[0]) - ox) - bz * shear_x,
+                (f64::from(c[0]) - ox) - cz * shear_x,
+            );
+            let (ay, by, cy) = (
+                (f64::from(a[1]) - oy) - az * shear_y,
+                (f64::from(b[1]) - oy) - bz * shear_y,
+                (f64::from(c[1]) - oy) - cz * shear_y,
+            );
+            let r = larger(
+                larger(larger(ax.abs(), bx.abs()), cx.abs()),
+                larger(larger(ay.abs(), by.abs()), cy.abs()),
+            );
+            let z = larger(larger(az.abs(), bz.abs()), cz.abs());
+            let error = 8.0 * f64::EPSILON * r * (r + z);
+            let (wa, wb, wc) = (cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax);
+            let area = wa + wb + wc;
+            let turn = if area < 0.0 { -1.0 } else { 1.0 };
+            let least = lesser(lesser(turn * wa, turn * wb), turn * wc);
+            let is_clear = area.abs() >= CANCELLED * error;
+            let is_inside = least >= 0.0;
+            let is_near_edge = least >= -error;
+            let mut depth = wa * az + wb * bz + wc * cz;
+            if depth.abs() <= 8.0 * f64::EPSILON * z * area.abs() {
+                depth = 0.0;
+            }
+            let crossing = (depth / (area * dz)) as f32;
+            let mut is_confirmed = true;
+            for (o, d, k) in [(ox, dx, 0), (oy, dy, 1), (oz, dz, 2)] {
+                let way = f64::from(crossing) * d;
+                let point = o + way;
+                let slack = POINT_TOLERANCE * (o.abs() + way.abs());
+                let low = f64::from(lesser_of(a[k], lesser_of(b[k], c[k])));
+                let high = f64::from(greater_of(a[k], greater_of(b[k], c[k])));
+                is_confirmed &= (low - slack <= point) & (point <= high + slack);
+            }
+            t[i] = crossing;
+            u[i] = (wb / area) as f32;
+            v[i] = (wc / area) as f32;
+            hit[i] = u32::from(is_clear & is_inside & is_confirmed);
+            delicate[i] = u32::from(!is_clear | (is_near_edge & !is_inside));
+        }
+        let (mut is_hit, mut is_delicate) = (0, 0);
+        for i in 0..W {
+            is_hit |= hit[i] << i;
+            is_delicate |= delicate[i] << i;
+        }
+        Crossings {
+            t,
+            u,
+            v,
+            is_hit,
+            is_delicate,
+        }
+    }
+}
+
 #[inline(always)]
 fn sub(a: Four, b: Four) -> Four {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]]

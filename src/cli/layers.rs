@@ -154,7 +154,8 @@ impl Kept {
             wanted.extend(all);
         }
         let is_light = |aov: &Aov| matches!(aov, Aov::Light(_));
-        let follows_light = settings.integrator == IntegratorKind::Whitted;
+        let integrator = settings.integrator;
+        let follows_light = matches!(integrator, IntegratorKind::Whitted | IntegratorKind::Path);
         if wanted.iter().any(is_light) && !follows_light {
             return Err(Failure::job(format_args!(
                 "--layers emission, direct, indirect and lights are parts of light, which \

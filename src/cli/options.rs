@@ -63,6 +63,9 @@ pub struct SceneArguments {
     /// Change a key of the scene file, like light.0.angle=0; may be given again
     #[arg(long, value_name = "PATH=VALUE", value_parser = arguments::assignment)]
     pub set: Vec<(String, String)>,
+    /// A picture of the surroundings (.exr, .hdr), in place of the scene's; in path it is light
+    #[arg(long, value_name = "FILE")]
+    pub environment: Option<PathBuf>,
     /// Refuse files that require an extension that is not known
     #[arg(long)]
     pub strict: bool,
@@ -106,12 +109,15 @@ pub struct PictureOptions {
     /// The background is seen by nothing but mirrors and glass, and pictures have an opacity [default: what the scene says]
     #[arg(long)]
     pub transparent: bool,
-    /// What is computed [default: the scene's, or whitted]
+    /// What is computed [default: the scene's; path for a glTF file by itself; or whitted]
     #[arg(long, value_name = "KIND", value_parser = one_of(IntegratorKind::ALL, IntegratorKind::name))]
     pub integrator: Option<IntegratorKind>,
     /// Scattering events of a path; 1 is direct light only [default: the scene's, or 8]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_DEPTH)))]
     pub max_depth: Option<u32>,
+    /// Dim light that was scattered more than once to this radiance (path); what that takes away is said
+    #[arg(long, value_name = "L", value_parser = arguments::positive)]
+    pub clamp: Option<f64>,
 }
 
 /// How it is sampled.
@@ -215,9 +221,17 @@ pub struct OutputOptions {
 impl SceneArguments {
     /// How the scene is imported.
     pub fn import_options(&self) -> SceneOptions {
+        let mut overrides = self.set.clone();
+        if let Some(file) = &self.environment {
+            // In a scene file paths are relative to its folder.
+            let file = std::path::absolute(file).unwrap_or_else(|_| file.clone());
+            let value = toml::Value::String(file.to_string_lossy().into_owned());
+            let key = "background.environment".to_owned();
+            overrides.push((key, value.to_string()));
+        }
         SceneOptions {
             is_strict: self.strict,
-            overrides: self.set.clone(),
+            overrides,
             ..SceneOptions::default()
         }
     }
@@ -255,6 +269,7 @@ impl RenderOptions {
         }
         put(self.picture.integrator, &mut settings.integrator);
         put(self.picture.max_depth, &mut settings.max_depth);
+        settings.clamp = (self.picture.clamp.map(|c| c as f32)).or(settings.clamp);
         put(self.sampling.samples, &mut settings.sampling.samples);
         put(self.sampling.pattern, &mut settings.sampling.pattern);
         put(self.sampling.target, &mut settings.sampling.target);

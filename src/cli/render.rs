@@ -313,6 +313,7 @@ fn watched(job: &Job, limits: &Limits, interrupt: &Interrupt, console: Console) 
     }
     progress.finish();
     say_rejected(console, &film);
+    say_clamped(console, job.settings, &film);
     film
 }
 
@@ -340,6 +341,16 @@ fn say_rejected(console: Console, film: &Film) {
             "{} samples were not finite numbers and were left out; \
              --replay {},{},{} shows the first",
             film.rejected, first.pixel.x, first.pixel.y, first.index
+        ));
+    }
+}
+
+fn say_clamped(console: Console, settings: &Settings, film: &Film) {
+    if let Some(clamp) = settings.clamp {
+        let percent = 100.0 * film.clamped_share();
+        console.say(format_args!(
+            "note: the clamp at {clamp} took {} % of the light",
+            Significant(percent)
         ));
     }
 }

@@ -31,6 +31,8 @@ pub struct Stats<'a> {
     pub error: Option<ErrorStats>,
     pub stopped_by: &'static str,
     pub rejected_samples: u64,
+    /// Share of the light that `clamp` took.
+    pub clamped_share: f64,
     /// What the picture did not need.
     pub left_out: &'a [LeftOut],
     /// Of the linear pixels: red, green, blue as little-endian singles, row by row.
@@ -116,6 +118,7 @@ impl<'a> Stats<'a> {
             camera,
             shadow,
             secondary,
+            clamped: _,
         } = done.film.rays;
         Self {
             size: done.film.size().to_array(),
@@ -134,6 +137,7 @@ impl<'a> Stats<'a> {
             error: done.error.map(ErrorStats::from),
             stopped_by: reason(done.film.stopped_by),
             rejected_samples: done.film.rejected,
+            clamped_share: done.film.clamped_share(),
             left_out: done.left_out,
             sha256: digest(done.pixels),
         }

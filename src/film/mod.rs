@@ -64,15 +64,17 @@ pub struct RejectedSample {
     pub index: u32,
 }
 
-/// Rays that were traced.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// Rays that were traced, and what was taken from what they brought.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RayCounts {
     /// From the camera.
     pub camera: u64,
     /// From surfaces to lights.
     pub shadow: u64,
-    /// Mirrored and refracted.
+    /// Mirrored, refracted and scattered.
     pub secondary: u64,
+    /// The luminance that clamping took from all samples together, W/(m² sr).
+    pub clamped: f64,
 }
 
 impl RayCounts {
@@ -86,6 +88,7 @@ impl RayCounts {
         self.camera += other.camera;
         self.shadow += other.shadow;
         self.secondary += other.secondary;
+        self.clamped += other.clamped;
     }
 }
 
@@ -162,6 +165,22 @@ impl Film {
     /// How wrong the picture is; `None` where its pattern or its samples do not tell.
     pub fn error(&self) -> Option<ErrorEstimate> {
         ErrorEstimate::of(&self.pixels)
+    }
+
+    /// Share of the luminance of all samples that clamping took; 0 where it took nothing.
+    pub fn clamped_share(&self) -> f64 {
+        let of_half = |half: &Moments| {
+            let [r, g, b] = half.mean().map(|m| m as f32);
+            half.count() as f64 * f64::from(Rgb::new(r, g, b).luminance())
+        };
+        let halves = self.pixels.iter().flat_map(|pixel| pixel.halves());
+        let kept: f64 = halves.map(of_half).sum();
+        let taken = self.rays.clamped;
+        if taken > 0.0 {
+            taken / (taken + kept)
+        } else {
+            0.0
+        }
     }
 
     /// Smallest, mean and largest number of samples of a pixel.

@@ -39,7 +39,7 @@ fn strip_materials(scene: &mut Scene, needs: Needs) -> Vec<Unread> {
     for instance in &scene.instances {
         is_shown[instance.material.0 as usize] = true;
     }
-    let has_ambient = !scene.background.ambient.is_black();
+    let has_ambient = needs.ambient && !scene.background.ambient.is_black();
     let mut images: Vec<Unread> = vec![Some(BTreeSet::new()); scene.images.len()];
     for (material, is_shown) in scene.materials.iter_mut().zip(is_shown) {
         let unread = TextureSlot::ALL.map(|slot| match is_shown {
@@ -84,7 +84,7 @@ fn unread(
             Some("the surfaces are opaque")
         }
         TextureSlot::Occlusion if !has_ambient => Some("there is no ambient light to occlude"),
-        TextureSlot::Thickness => Some("volumes are shown clear"),
+        TextureSlot::Thickness => Some("bodies are as thick as their meshes"),
         _ if is_multiplied_by_zero(slot, material) => Some("their factors are 0"),
         _ => None,
     }
@@ -107,6 +107,28 @@ fn is_multiplied_by_zero(slot: TextureSlot, material: &Material) -> bool {
             TextureSlot::Specular => surface.specular.factor == 0.0,
             TextureSlot::SpecularColor => surface.specular_color.factor.is_black(),
             TextureSlot::Transmission => surface.transmission.factor == 0.0,
+            TextureSlot::Clearcoat
+            | TextureSlot::ClearcoatRoughness
+            | TextureSlot::ClearcoatNormal => {
+                let coat = surface.clearcoat.as_ref();
+                coat.is_some_and(|coat| coat.factor.factor == 0.0)
+            }
+            TextureSlot::SheenColor | TextureSlot::SheenRoughness => {
+                let sheen = surface.sheen.as_ref();
+                sheen.is_some_and(|sheen| sheen.color.factor.is_black())
+            }
+            TextureSlot::Iridescence | TextureSlot::IridescenceThickness => {
+                let film = surface.iridescence.as_ref();
+                film.is_some_and(|film| film.factor.factor == 0.0)
+            }
+            TextureSlot::Anisotropy => {
+                let grain = surface.anisotropy.as_ref();
+                grain.is_some_and(|grain| grain.strength == 0.0)
+            }
+            TextureSlot::DiffuseTransmission | TextureSlot::DiffuseTransmissionColor => {
+                let through = surface.diffuse_transmission.as_ref();
+                through.is_some_and(|through| through.factor.factor == 0.0)
+            }
             _ => false,
         },
         _ => false,
@@ -166,7 +188,7 @@ fn drop_attributes(scene: &mut Scene, needs: Needs) -> Vec<LeftOut> {
     }
     let reasons = [
         ("normals", "what is rendered does not read them"),
-        ("tangents", "no normal map is read with them"),
+        ("tangents", "nothing is bent or stretched along them"),
         ("texture coordinates", "no texture is read with them"),
         ("colours of vertices", "what is rendered does not read them"),
     ];
@@ -188,7 +210,7 @@ fn read_attributes(material: &mut Material, needs: Needs) -> Attributes {
     });
     Attributes {
         normals: needs.scattering || needs.normals,
-        tangents: material.normal_map.is_some(),
+        tangents: material.reads_tangents(),
         uv_sets,
         colors: needs.scattering || needs.albedo || material.alpha_mode != AlphaMode::Opaque,
     }

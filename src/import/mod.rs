@@ -6,6 +6,7 @@
 
 mod budget;
 mod census;
+mod environment;
 mod files;
 mod gltf;
 mod images;

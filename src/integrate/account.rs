@@ -154,7 +154,7 @@ impl Account {
     }
 
     /// Adds light of `source` that was scattered `events` times.
-    pub(super) fn add(&mut self, source: Source, events: u32, radiance: Rgb) {
+    pub fn add(&mut self, source: Source, events: u32, radiance: Rgb) {
         self.by_events[events.min(2) as usize] += radiance;
         let group = self.groups.group(source);
         if let Some(sum) = group.and_then(|group| self.by_group.get_mut(group)) {

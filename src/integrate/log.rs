@@ -16,7 +16,10 @@ pub enum RayKind {
     Reflected,
     /// Through glass, with a bend.
     Refracted,
-    /// To the light with this number.
+    /// From a surface, one of all directions in which it scatters.
+    Scattered,
+    /// To the light with this number: those of the scene in file order, then the environment, then
+    /// the triangles that shine.
     Shadow(u32),
 }
 
@@ -26,6 +29,7 @@ impl fmt::Display for RayKind {
             RayKind::Camera => write!(f, "camera ray"),
             RayKind::Reflected => write!(f, "reflected ray"),
             RayKind::Refracted => write!(f, "refracted ray"),
+            RayKind::Scattered => write!(f, "scattered ray"),
             RayKind::Shadow(light) => write!(f, "shadow ray to light {light}"),
         }
     }
@@ -54,8 +58,10 @@ pub struct RayLog {
     pub counts: RayCounts,
     /// All of them in order, where somebody asked.
     pub records: Option<Vec<RayRecord>>,
-    /// What the sample tells that is being traced, where somebody asked.
-    pub account: Option<Account>,
+    /// What is told of each of the samples that are traced together; none where nobody asked.
+    pub accounts: Vec<Account>,
+    /// The place of the sample that is told about.
+    sample: usize,
 }
 
 impl RayLog {
@@ -67,11 +73,21 @@ impl RayLog {
         }
     }
 
+    /// A log that is told what `accounts` are for: one for each sample that is traced at a time.
+    pub fn told(accounts: Vec<Account>) -> Self {
+        Self {
+            accounts,
+            ..Self::default()
+        }
+    }
+
     /// Counts a ray; `record` is asked for where rays are kept.
     pub fn add(&mut self, kind: RayKind, record: impl FnOnce() -> RayRecord) {
         match kind {
             RayKind::Camera => self.counts.camera += 1,
-            RayKind::Reflected | RayKind::Refracted => self.counts.secondary += 1,
+            RayKind::Reflected | RayKind::Refracted | RayKind::Scattered => {
+                self.counts.secondary += 1
+            }
             RayKind::Shadow(_) => self.counts.shadow += 1,
         }
         if let Some(records) = &mut self.records {
@@ -79,9 +95,19 @@ impl RayLog {
         }
     }
 
+    /// What follows is told of the sample at this place among those that are traced together.
+    pub fn turn_to(&mut self, place: usize) {
+        self.sample = place;
+    }
+
+    /// Whether anybody listens to what is told.
+    pub fn is_told(&self) -> bool {
+        !self.accounts.is_empty()
+    }
+
     /// Tells that a ray from the camera meets `sight`, which covers `share` of it. Told from front to back.
     pub fn see(&mut self, sight: Sight, share: f32) {
-        if let Some(account) = &mut self.account {
+        if let Some(account) = self.accounts.get_mut(self.sample) {
             account.seen.push(Seen { sight, share });
         }
     }
@@ -89,7 +115,7 @@ impl RayLog {
     /// Tells that `weight * radiance` of the sample was given off by `source` and scattered `events` times
     /// on its way to the camera. All that is told of a sample adds up to its radiance.
     pub fn light(&mut self, source: Source, events: u32, weight: Rgb, radiance: Rgb) {
-        if let Some(account) = &mut self.account {
+        if let Some(account) = self.accounts.get_mut(self.sample) {
             account.add(source, events, weight * radiance);
         }
     }

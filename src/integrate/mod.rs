@@ -3,6 +3,7 @@
 mod account;
 mod aov;
 mod log;
+mod path;
 mod views;
 mod visibility;
 mod whitted;
@@ -10,6 +11,7 @@ mod whitted;
 pub use account::{Account, LightGroups, LightPart, Seen, Sight, Source};
 pub use aov::Aov;
 pub use log::{RayKind, RayLog, RayRecord};
+pub use path::{PathTracer, Weighing};
 pub use views::{FirstSurface, View, ViewKind};
 pub use whitted::Whitted;
 
@@ -20,13 +22,31 @@ use crate::prepare::PreparedScene;
 use crate::sampling::{Pattern, Sampler};
 use crate::scene::{IntegratorKind, Settings};
 
+/// Where a sample of a pixel begins.
+#[derive(Clone, Copy, Debug)]
+pub struct CameraSample {
+    /// Its ray from the camera.
+    pub ray: Ray,
+    /// Its other numbers.
+    pub sampler: Sampler,
+}
+
 /// A technique: what light, or what else, comes back along a ray.
 pub trait Integrator: Sync {
     /// Radiance along `ray`, W/(m² sr), with the random numbers of `sampler`.
     ///
-    /// The rays that are traced for it are counted, and on request recorded, in `log`; where the log has
-    /// an account, it is told what the camera sees and where the light comes from.
+    /// The rays that are traced for it are counted, and on request recorded, in `log`, which is also told what
+    /// the camera sees and where the light comes from.
     fn radiance(&self, ray: &Ray, sampler: &Sampler, log: &mut RayLog) -> Rgb;
+
+    /// [`Self::radiance`] of each of `samples`, appended to `radiances`, with the same bits. Samples of near
+    /// places of the film may be quicker together than one by one.
+    fn radiances(&self, samples: &[CameraSample], radiances: &mut Vec<Rgb>, log: &mut RayLog) {
+        for (place, sample) in samples.iter().enumerate() {
+            log.turn_to(place);
+            radiances.push(self.radiance(&sample.ray, &sample.sampler, log));
+        }
+    }
 
     /// What [`Self::radiance`] is along every ray that meets nothing: black where the background is transparent.
     fn background(&self) -> Rgb;
@@ -40,6 +60,7 @@ pub fn integrator<'a>(
     let view = |kind| Box::new(View { scene, kind });
     match settings.integrator {
         IntegratorKind::Whitted => Box::new(Whitted::new(scene, settings)),
+        IntegratorKind::Path => Box::new(PathTracer::new(scene, settings)),
         IntegratorKind::Normal => view(ViewKind::Normal),
         IntegratorKind::Depth => view(ViewKind::Depth),
         IntegratorKind::Albedo => view(ViewKind::Albedo),

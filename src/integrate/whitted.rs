@@ -5,14 +5,14 @@ use crate::bvh::Hit;
 use crate::color::Rgb;
 use crate::interaction::Interaction;
 use crate::light::{Light, LightSample, ShadowEnd};
-use crate::material::{Bsdf, reflect, refract};
+use crate::material::{Bsdf, View, reflect, refract};
 use crate::math::Ray;
 use crate::prepare::{PreparedScene, Surface};
 use crate::sampling::Sampler;
 use crate::scene::Settings;
 
 use super::visibility::transmittance;
-use super::{Integrator, RayKind, RayLog, RayRecord, Sight, Source, light_samples};
+use super::{CameraSample, Integrator, RayKind, RayLog, RayRecord, Sight, Source, light_samples};
 
 /// Rays that count for less than this in every channel are not followed: what is cut off is at
 /// most this share of what they would have brought back.
@@ -50,6 +50,32 @@ struct MetLight {
     radiance: Rgb,
 }
 
+/// What is still to be done for some samples.
+#[derive(Default)]
+struct Work {
+    /// The place of the sample that is followed, among those that are taken together.
+    sample: usize,
+    /// Its rays that are still to be followed.
+    pending: Vec<Pending>,
+    /// Rays to lights, of all samples.
+    shadow_rays: Vec<Ray>,
+    /// What they are for.
+    shadows: Vec<Shadow>,
+    /// Whether something is in their way.
+    blocked: Vec<bool>,
+}
+
+/// What a shadow ray is for.
+struct Shadow {
+    /// The place of its sample among those that are taken together.
+    sample: usize,
+    light: u32,
+    /// Scattering events before it.
+    depth: u32,
+    /// What the light adds to the sample where nothing is in the way.
+    value: Rgb,
+}
+
 /// The vertex that a ray leads to which leaves `vertex` by the way of `branch`, an odd number: a
 /// step of a linear congruential generator, so that even the deepest have numbers of their own.
 fn child(vertex: u32, branch: u32) -> u32 {
@@ -73,45 +99,44 @@ impl<'a> Whitted<'a> {
         }
     }
 
-    /// What comes back along one ray, surfaces that it crosses without a bend included; rays that
-    /// leave in other directions are added to `pending`.
+    /// What comes back along one ray, surfaces that it crosses without a bend included, but for what
+    /// waits for the shadow rays that are added to `work`; so are rays that leave in other directions. `first` is the
+    /// ray's nearest hit.
     fn follow(
         &self,
         from: &Pending,
+        first: Option<Hit>,
         sampler: &Sampler,
         log: &mut RayLog,
-        pending: &mut Vec<Pending>,
+        work: &mut Work,
     ) -> Rgb {
+        log.add(from.kind, || RayRecord {
+            kind: from.kind,
+            depth: from.depth,
+            ray: from.ray,
+            t: first.map(|h| h.t),
+            weight: from.weight,
+        });
         let mut total = Rgb::BLACK;
         let mut weight = from.weight;
         // What no surface covers of the ray, whatever glass lets through.
         let mut clear = 1.0;
         let is_camera = from.kind == RayKind::Camera;
-        let mut last: Option<Hit> = None;
+        let mut next = first;
+        let mut passed = 0.0;
         loop {
-            let hit = self.scene.closest_hit(&from.ray, last.as_ref());
-            if last.is_none() {
-                log.add(from.kind, || RayRecord {
-                    kind: from.kind,
-                    depth: from.depth,
-                    ray: from.ray,
-                    t: hit.map(|h| h.t),
-                    weight,
-                });
-            }
-            let passed = last.map_or(0.0, |h| h.t);
-            if let Some(met) = self.light_between(&from.ray, passed, hit.as_ref()) {
+            if let Some(met) = self.light_between(&from.ray, passed, next.as_ref()) {
                 if is_camera {
                     log.see(Sight::Light { t: met.t }, clear);
                 }
                 log.light(Source::Light(met.number), from.depth, weight, met.radiance);
                 return total + weight * met.radiance;
             }
-            let Some(hit) = hit else {
+            let Some(hit) = next else {
                 if is_camera && self.is_transparent {
                     weight = weight - Rgb::splat(clear);
                 }
-                let radiance = self.scene.background.radiance;
+                let radiance = self.scene.radiance_beyond(&from.ray);
                 log.light(Source::Background, from.depth, weight, radiance);
                 return total + weight * radiance;
             };
@@ -127,14 +152,15 @@ impl<'a> Whitted<'a> {
                     weight: weight * opacity,
                     ..*from
                 };
-                total += here.weight * self.shade(&surface, &here, sampler, log);
-                straight += opacity * self.scatter(&surface, &here, pending);
+                total += here.weight * self.shade(&surface, &here, sampler, log, work);
+                straight += opacity * self.scatter(&surface, &here, &mut work.pending);
             }
             weight *= straight;
             if weight.max_channel() < LEAST_WEIGHT {
                 return total;
             }
-            last = Some(hit);
+            passed = hit.t;
+            next = self.scene.closest_hit(&from.ray, Some(&hit));
         }
     }
 
@@ -156,18 +182,25 @@ impl<'a> Whitted<'a> {
             .min_by(|a, b| a.t.total_cmp(&b.t))
     }
 
-    /// Emitted, ambient and direct light that leaves `surface` to the viewer.
-    fn shade(&self, surface: &Surface, from: &Pending, sampler: &Sampler, log: &mut RayLog) -> Rgb {
+    /// Emitted and ambient light that leaves `surface` to the viewer; the direct light waits for shadow rays.
+    fn shade(
+        &self,
+        surface: &Surface,
+        from: &Pending,
+        sampler: &Sampler,
+        log: &mut RayLog,
+        work: &mut Work,
+    ) -> Rgb {
         let at = &surface.interaction;
-        let cos_o = at.shading_normal.dot(*at.wo);
+        let view = surface.view();
         let ambient = self.scene.background.ambient * surface.material.occlusion(&surface.lookup);
         let emitted = surface.material.emitted(&surface.lookup);
-        let ambient = ambient * surface.bsdf.ambient(cos_o);
+        let ambient = ambient * surface.bsdf.ambient(&view);
         log.light(Source::Surface, from.depth, from.weight, emitted);
         log.light(Source::Background, from.depth + 1, from.weight, ambient);
-        let mut total = emitted + ambient;
+        let shining = emitted + ambient;
         if from.depth >= self.max_depth {
-            return total;
+            return shining;
         }
         let unmirrored = surface.bsdf.without_mirrored();
         for &number in &self.scene.shining {
@@ -178,59 +211,96 @@ impl<'a> Whitted<'a> {
             } else {
                 surface.bsdf
             };
-            let mut sum = Rgb::BLACK;
             for j in 0..count {
                 let u = sampler.light(from.vertex, number, j, count);
-                if let Some(sample) = light.sample(at.point, u) {
-                    sum += self.direct(at, &bsdf, &sample, from, number, log);
+                let shadow = light
+                    .sample(at.point, u)
+                    .and_then(|sample| self.direct(at, &bsdf, &view, &sample));
+                if let Some((ray, value)) = shadow {
+                    work.shadow_rays.push(ray);
+                    work.shadows.push(Shadow {
+                        sample: work.sample,
+                        light: number,
+                        depth: from.depth,
+                        value: from.weight * value / count as f32,
+                    });
                 }
             }
-            let mean = sum / count as f32;
-            log.light(Source::Light(number), from.depth + 1, from.weight, mean);
-            total += mean;
         }
-        total
+        shining
     }
 
-    /// What one sample of a light adds.
+    /// What one sample of a light adds where nothing is in the way of a ray.
     fn direct(
         &self,
         at: &Interaction,
         bsdf: &Bsdf,
+        view: &View,
         sample: &LightSample,
-        from: &Pending,
-        light: u32,
-        log: &mut RayLog,
-    ) -> Rgb {
+    ) -> Option<(Ray, Rgb)> {
         let cos_i = at.shading_normal.dot(*sample.wi);
-        if cos_i <= 0.0 || at.geometric_normal.dot(*sample.wi) <= 0.0 {
-            return Rgb::BLACK;
+        // Light from behind shows on what scatters it through; both normals must agree where it is.
+        let side = match cos_i > 0.0 {
+            true => 1.0,
+            false if bsdf.is_translucent() => -1.0,
+            false => return None,
+        };
+        if at.geometric_normal.dot(*sample.wi) * side <= 0.0 {
+            return None;
         }
         // The end of the shadow ray may be below the horizon of a point that sees the centre.
         if let ShadowEnd::Point(end) = sample.shadow
-            && at.geometric_normal.dot(end - at.point) <= 0.0
+            && at.geometric_normal.dot(end - at.point) * side <= 0.0
         {
-            return Rgb::BLACK;
+            return None;
         }
-        let scattered = bsdf.eval(at.shading_normal, at.wo, sample.wi);
-        let unshadowed = sample.weight * scattered * cos_i;
+        let scattered = bsdf.shown(view, sample.wi);
+        let unshadowed = sample.weight * scattered * cos_i.abs();
         if unshadowed.is_black() {
-            return Rgb::BLACK;
+            return None;
         }
         let ray = match sample.shadow {
             ShadowEnd::Point(target) => at.spawn_ray_to(target),
             ShadowEnd::Direction(direction) => at.spawn_ray(*direction),
         };
-        let value = unshadowed * transmittance(self.scene, &ray);
-        let kind = RayKind::Shadow(light);
-        log.add(kind, || RayRecord {
-            kind,
-            depth: from.depth,
-            ray,
-            t: None,
-            weight: value,
-        });
-        value
+        Some((ray, unshadowed))
+    }
+
+    /// Traces the shadow rays, and adds what comes through to the `radiances` of their samples.
+    fn light_up(&self, work: &mut Work, radiances: &mut [Rgb], log: &mut RayLog) {
+        let Work {
+            shadow_rays: rays,
+            shadows,
+            blocked,
+            ..
+        } = work;
+        blocked.resize(rays.len(), false);
+        let is_told = self.scene.are_blocked(rays, blocked);
+        for ((shadow, ray), is_blocked) in shadows.iter().zip(rays.iter()).zip(blocked.iter()) {
+            let value = match (is_told, is_blocked) {
+                (true, true) => Rgb::BLACK,
+                (true, false) => shadow.value,
+                (false, _) => shadow.value * transmittance(self.scene, ray),
+            };
+            radiances[shadow.sample] += value;
+            log.turn_to(shadow.sample);
+            log.light(
+                Source::Light(shadow.light),
+                shadow.depth + 1,
+                Rgb::WHITE,
+                value,
+            );
+            let kind = RayKind::Shadow(shadow.light);
+            log.add(kind, || RayRecord {
+                kind,
+                depth: shadow.depth,
+                ray: *ray,
+                t: None,
+                weight: value,
+            });
+        }
+        shadows.clear();
+        rays.clear();
     }
 
     /// Sends rays on from a mirror or from glass; returns the share that goes straight on.
@@ -275,19 +345,39 @@ impl<'a> Whitted<'a> {
 
 impl Integrator for Whitted<'_> {
     fn radiance(&self, ray: &Ray, sampler: &Sampler, log: &mut RayLog) -> Rgb {
-        let mut pending = Vec::new();
-        let camera = Pending {
-            kind: RayKind::Camera,
+        let sample = CameraSample {
             ray: *ray,
-            weight: Rgb::WHITE,
-            depth: 0,
-            vertex: 1,
+            sampler: *sampler,
         };
-        let mut total = self.follow(&camera, sampler, log, &mut pending);
-        while let Some(next) = pending.pop() {
-            total += self.follow(&next, sampler, log, &mut pending);
+        let mut radiances = Vec::with_capacity(1);
+        self.radiances(&[sample], &mut radiances, log);
+        radiances.pop().unwrap_or(Rgb::BLACK)
+    }
+
+    fn radiances(&self, samples: &[CameraSample], radiances: &mut Vec<Rgb>, log: &mut RayLog) {
+        let rays: Vec<Ray> = samples.iter().map(|sample| sample.ray).collect();
+        let mut hits = vec![None; rays.len()];
+        self.scene.closest_hits(&rays, &mut hits);
+        let mut work = Work::default();
+        let start = radiances.len();
+        for (place, (CameraSample { ray, sampler }, hit)) in samples.iter().zip(hits).enumerate() {
+            work.sample = place;
+            log.turn_to(place);
+            let camera = Pending {
+                kind: RayKind::Camera,
+                ray: *ray,
+                weight: Rgb::WHITE,
+                depth: 0,
+                vertex: 1,
+            };
+            let mut total = self.follow(&camera, hit, sampler, log, &mut work);
+            while let Some(next) = work.pending.pop() {
+                let hit = self.scene.closest_hit(&next.ray, None);
+                total += self.follow(&next, hit, sampler, log, &mut work);
+            }
+            radiances.push(total);
         }
-        total
+        self.light_up(&mut work, &mut radiances[start..], log);
     }
 
     fn background(&self) -> Rgb {

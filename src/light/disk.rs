@@ -37,6 +37,13 @@ impl DiskLight {
         })
     }
 
+    /// See [`super::Light::density`].
+    pub fn density(&self, point: Vec3, wi: UnitVec3) -> f64 {
+        let center = self.center.as_dvec3() - point.as_dvec3();
+        SphericalEllipse::of_disk(center, self.exact_normal(), self.radius.into())
+            .map_or(0.0, |seen| seen.density(wi.as_dvec3().normalize()))
+    }
+
     /// Of length 1 to double precision.
     fn exact_normal(&self) -> DVec3 {
         self.normal.as_dvec3().normalize()
@@ -56,11 +63,8 @@ impl DiskLight {
         }
     }
 
-    /// See [`super::Light::emitted`].
-    pub fn emitted(&self, ray: &Ray) -> Option<(f32, Rgb)> {
-        if !self.is_visible {
-            return None;
-        }
+    /// See [`super::Light::met`].
+    pub fn met(&self, ray: &Ray) -> Option<(f32, Rgb)> {
         let center = self.center.as_dvec3() - ray.origin.as_dvec3();
         let (t, from_center) = plane_hit(ray, center, self.exact_normal())?;
         let radius = f64::from(self.radius);

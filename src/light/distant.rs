@@ -1,6 +1,6 @@
 //! Parallel light from far away, such as the sun.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::{LightSample, ShadowEnd, has_extent, weigh};
 use crate::color::Rgb;
@@ -31,15 +31,8 @@ impl DistantLight {
                 shadow: ShadowEnd::Direction(center),
             });
         }
-        let half_angle = (0.5 * f64::from(self.angle_radians)).min(PI);
-        let one_minus_cos = 2.0 * (0.5 * half_angle).sin().powi(2);
-        // Radiance L on a facing surface: E = π L sin²a, and π L where the cap is more than the
-        // hemisphere. The weight is L times the cap's solid angle, 2π (1 - cos a).
-        let weight = if half_angle < FRAC_PI_2 {
-            2.0 / (2.0 - one_minus_cos)
-        } else {
-            2.0 * one_minus_cos
-        };
+        let one_minus_cos = self.one_minus_cos();
+        let weight = self.radiance_times_solid_angle();
         let local = square_to_cone(u, one_minus_cos).as_vec3();
         let wi = UnitVec3::normalize(Frame::around(center).to_world(local))?;
         Some(LightSample {
@@ -47,6 +40,49 @@ impl DistantLight {
             weight: weigh(self.irradiance, weight)?,
             shadow: ShadowEnd::Direction(wi),
         })
+    }
+
+    /// 1 less the cosine of half the angle that it covers.
+    fn one_minus_cos(&self) -> f64 {
+        2.0 * (0.5 * self.half_angle()).sin().powi(2)
+    }
+
+    fn half_angle(&self) -> f64 {
+        (0.5 * f64::from(self.angle_radians)).min(PI)
+    }
+
+    /// For an irradiance of 1.
+    fn radiance_times_solid_angle(&self) -> f64 {
+        // Radiance L on a facing surface: E = π L sin²a, and π L where the cap is more than the
+        // hemisphere. The cap's solid angle is 2π (1 - cos a).
+        if self.half_angle() < FRAC_PI_2 {
+            2.0 / (2.0 - self.one_minus_cos())
+        } else {
+            2.0 * self.one_minus_cos()
+        }
+    }
+
+    /// See [`super::Light::density`].
+    pub fn density(&self) -> f64 {
+        if self.is_delta() {
+            0.0
+        } else {
+            1.0 / (TAU * self.one_minus_cos())
+        }
+    }
+
+    /// Radiance of the sky in the direction `wi`, as far as this light makes it.
+    pub fn radiance_from(&self, wi: UnitVec3) -> Rgb {
+        if self.is_delta() {
+            return Rgb::BLACK;
+        }
+        // 1 - cos without cancellation: for unit vectors |v - w|² / 2.
+        let off = 0.5 * wi.as_dvec3().distance_squared(-self.direction.as_dvec3());
+        if off > self.one_minus_cos() {
+            return Rgb::BLACK;
+        }
+        let radiance = self.radiance_times_solid_angle() * self.density();
+        self.irradiance.map(|c| (f64::from(c) * radiance) as f32)
     }
 
     /// See [`super::Light::is_delta`].

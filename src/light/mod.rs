@@ -5,6 +5,7 @@
 
 mod disk;
 mod distant;
+mod environment;
 mod falloff;
 mod point;
 mod rectangle;
@@ -12,14 +13,19 @@ mod sphere;
 mod spherical_ellipse;
 mod spherical_rectangle;
 mod spot;
+mod tree;
+mod triangle;
 
 pub use disk::DiskLight;
 pub use distant::DistantLight;
+pub use environment::{Environment, EnvironmentSampler};
 pub use falloff::Falloff;
 pub use point::PointLight;
 pub use rectangle::RectangleLight;
 pub use sphere::SphereLight;
 pub use spot::SpotLight;
+pub use tree::{LightBounds, LightTree, Receiver};
+pub use triangle::{SeenTriangle, TriangleSample};
 
 use crate::color::Rgb;
 use crate::math::{Aabb, DVec3, Ray, UnitVec3, Vec2, Vec3};
@@ -84,6 +90,49 @@ impl Light {
         each_kind!(self, light => light.sample(point, u))
     }
 
+    /// The density by solid angle with which [`Self::sample`] at `point` takes the direction `wi`, in
+    /// which the light is seen; 0 for lights that no ray can meet, since they have no surface.
+    pub fn density(&self, point: Vec3, wi: UnitVec3) -> f64 {
+        let density = match self {
+            Light::Point(_) | Light::Spot(_) => 0.0,
+            Light::Distant(light) => light.density(),
+            Light::Disk(light) => light.density(point, wi),
+            Light::Rectangle(light) => light.density(point, wi),
+            Light::Sphere(light) => light.density(point),
+        };
+        if density.is_finite() { density } else { 0.0 }
+    }
+
+    /// Where it is, which way it shines and how strong it is; `None` where it is infinitely far away
+    /// or has no power.
+    pub fn light_bounds(&self) -> Option<LightBounds> {
+        let bounds = match self {
+            Light::Distant(_) => return None,
+            Light::Point(light) => {
+                let bounds = Aabb::of_points([light.position]);
+                LightBounds::in_all_directions(bounds, light.intensity.luminance().into())
+            }
+            Light::Spot(light) => light.light_bounds(),
+            Light::Disk(light) => {
+                let area = std::f64::consts::PI * f64::from(light.radius).powi(2);
+                let power = area * f64::from(light.radiance.luminance());
+                LightBounds::flat(self.extent(), light.normal, false, power)
+            }
+            Light::Rectangle(light) => {
+                let (normal, area) = light.normal_and_area()?;
+                let power = area * f64::from(light.radiance.luminance());
+                LightBounds::flat(self.extent(), normal, false, power)
+            }
+            Light::Sphere(light) => {
+                let area = std::f64::consts::PI * f64::from(light.radius).powi(2);
+                let power = area * f64::from(light.radiance.luminance());
+                LightBounds::in_all_directions(self.extent(), power)
+            }
+        };
+        // Colours may have a luminance of 0 where they are not black, but for rounding.
+        (!self.is_black()).then(|| bounds.with_least(f64::MIN_POSITIVE))
+    }
+
     /// Whether every `u` gives the same sample: then one shadow ray says it all.
     pub fn is_delta(&self) -> bool {
         each_kind!(self, light => light.is_delta())
@@ -108,26 +157,35 @@ impl Light {
         }
     }
 
-    /// A box around what rays can meet of the light; `None` where that is nothing.
+    /// A box around what rays from the camera can meet of the light; `None` where that is nothing.
     pub fn bounds(&self) -> Option<Aabb> {
+        self.is_visible().then(|| self.extent())
+    }
+
+    /// A box around its surface; empty where it has none.
+    fn extent(&self) -> Aabb {
         let (center, reach) = match self {
             Light::Disk(light) => (light.center, Vec3::splat(light.radius)),
             Light::Rectangle(light) => (light.center, light.half_u.abs() + light.half_v.abs()),
             Light::Sphere(light) => (light.center, Vec3::splat(light.radius)),
-            Light::Point(_) | Light::Spot(_) | Light::Distant(_) => return None,
+            Light::Point(_) | Light::Spot(_) | Light::Distant(_) => return Aabb::EMPTY,
         };
-        let corners = [center - reach, center + reach];
-        self.is_visible().then(|| Aabb::of_points(corners))
+        Aabb::of_points([center - reach, center + reach])
     }
 
-    /// Where `ray` meets the light itself, and the radiance it sees there.
+    /// Where a ray from the camera meets the light itself, and the radiance it sees there.
     ///
     /// `None` for lights without a surface, invisible ones, and the back of one-sided ones.
     pub fn emitted(&self, ray: &Ray) -> Option<(f32, Rgb)> {
+        self.is_visible().then(|| self.met(ray))?
+    }
+
+    /// As [`Self::emitted`], for rays from surfaces: those meet lights that the camera does not see.
+    pub fn met(&self, ray: &Ray) -> Option<(f32, Rgb)> {
         match self {
-            Light::Disk(light) => light.emitted(ray),
-            Light::Rectangle(light) => light.emitted(ray),
-            Light::Sphere(light) => light.emitted(ray),
+            Light::Disk(light) => light.met(ray),
+            Light::Rectangle(light) => light.met(ray),
+            Light::Sphere(light) => light.met(ray),
             Light::Point(_) | Light::Spot(_) | Light::Distant(_) => None,
         }
     }

@@ -3,7 +3,7 @@
 use super::spherical_rectangle::SphericalRectangle;
 use super::{LightSample, ShadowEnd, plane_hit, shadow_point, unit, weigh};
 use crate::color::Rgb;
-use crate::math::{DVec2, DVec3, Ray, Vec2, Vec3};
+use crate::math::{DVec2, DVec3, Ray, UnitVec3, Vec2, Vec3};
 
 /// A one-sided rectangle of constant radiance.
 #[derive(Clone, Copy, Debug)]
@@ -60,6 +60,33 @@ impl RectangleLight {
         })
     }
 
+    /// See [`super::Light::density`].
+    pub fn density(&self, point: Vec3, wi: UnitVec3) -> f64 {
+        let Some(edges) = self.edges() else {
+            return 0.0;
+        };
+        let center = self.center.as_dvec3() - point.as_dvec3();
+        let normal = edges.cross.normalize();
+        let height = -center.dot(normal);
+        if !(height > 0.0 && height.is_finite()) {
+            return 0.0;
+        }
+        match SphericalRectangle::new(center, edges.half_u, edges.half_v, height) {
+            Some(seen) => 1.0 / seen.solid_angle(),
+            None => {
+                // Distance² / (area cos): the distance is the height over the cosine.
+                let cos = -wi.as_dvec3().normalize().dot(normal);
+                height * height / (4.0 * edges.cross.length() * cos * cos * cos)
+            }
+        }
+    }
+
+    /// The side that shines, and the area; `None` where there is none.
+    pub fn normal_and_area(&self) -> Option<(UnitVec3, f64)> {
+        let cross = self.edges()?.cross;
+        Some((UnitVec3::normalize_f64(cross)?, 4.0 * cross.length()))
+    }
+
     /// `None` where they enclose no area.
     fn edges(&self) -> Option<Edges> {
         let (half_u, half_v) = (self.half_u.as_dvec3(), self.half_v.as_dvec3());
@@ -87,11 +114,8 @@ impl RectangleLight {
         }
     }
 
-    /// See [`super::Light::emitted`].
-    pub fn emitted(&self, ray: &Ray) -> Option<(f32, Rgb)> {
-        if !self.is_visible {
-            return None;
-        }
+    /// See [`super::Light::met`].
+    pub fn met(&self, ray: &Ray) -> Option<(f32, Rgb)> {
         let edges = self.edges()?;
         let center = self.center.as_dvec3() - ray.origin.as_dvec3();
         let normal = edges.cross.normalize();

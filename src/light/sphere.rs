@@ -30,20 +30,10 @@ impl SphereLight {
             return None;
         }
         let radius = f64::from(self.radius);
-        // At the very centre every axis will do.
-        let toward = Toward::new(point, self.center).unwrap_or(Toward {
-            direction: DVec3::Z,
-            distance: 0.0,
-        });
+        let toward = self.toward(point);
         let distance = toward.distance;
         let is_inside = distance <= radius;
-        let one_minus_cos = if is_inside {
-            2.0
-        } else {
-            let sin = radius / distance;
-            let cos = ((distance - radius) * (distance + radius)).sqrt() / distance;
-            sin * sin / (1.0 + cos)
-        };
+        let one_minus_cos = self.one_minus_cos(distance);
 
         let local = square_to_cone(u, one_minus_cos);
         let (tangent, bitangent) = toward.direction.any_orthonormal_pair();
@@ -62,6 +52,30 @@ impl SphereLight {
         })
     }
 
+    /// The way to its centre, at which every axis will do.
+    fn toward(&self, point: Vec3) -> Toward {
+        Toward::new(point, self.center).unwrap_or(Toward {
+            direction: DVec3::Z,
+            distance: 0.0,
+        })
+    }
+
+    /// 1 less the cosine of the half angle under which it is seen from `distance`; 2 from inside.
+    fn one_minus_cos(&self, distance: f64) -> f64 {
+        let radius = f64::from(self.radius);
+        if distance <= radius {
+            return 2.0;
+        }
+        let sin = radius / distance;
+        let cos = ((distance - radius) * (distance + radius)).sqrt() / distance;
+        sin * sin / (1.0 + cos)
+    }
+
+    /// See [`super::Light::density`].
+    pub fn density(&self, point: Vec3) -> f64 {
+        1.0 / (TAU * self.one_minus_cos(self.toward(point).distance))
+    }
+
     /// See [`super::Light::is_delta`].
     pub fn is_delta(&self) -> bool {
         !has_extent(self.radius)
@@ -76,9 +90,9 @@ impl SphereLight {
         }
     }
 
-    /// See [`super::Light::emitted`].
-    pub fn emitted(&self, ray: &Ray) -> Option<(f32, Rgb)> {
-        if !self.is_visible || self.is_delta() {
+    /// See [`super::Light::met`].
+    pub fn met(&self, ray: &Ray) -> Option<(f32, Rgb)> {
+        if self.is_delta() {
             return None;
         }
         let radius = f64::from(self.radius);

@@ -88,6 +88,17 @@ impl SphericalEllipse {
         })
     }
 
+    /// The density by solid angle with which [`Self::sample`] takes a direction in which the disk is seen.
+    pub fn density(&self, direction: DVec3) -> f64 {
+        let z = direction.dot(self.axis);
+        let y = direction.dot(self.narrow);
+        let round_y = y / self.squash;
+        // As in `sample`, the other way round.
+        let round_z = (z * z - (round_y - y) * (round_y + y)).max(0.0).sqrt();
+        let round_z = round_z.max(self.cos);
+        z / (TAU * self.one_minus_cos * self.squash * round_z)
+    }
+
     /// A direction of density `1 / inverse_density` by solid angle.
     pub fn sample(&self, u: Vec2) -> DiskSample {
         let round = square_to_cone(u, self.one_minus_cos);

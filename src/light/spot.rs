@@ -1,9 +1,9 @@
 //! A point that shines into a cone.
 
 use super::point::shadow_end;
-use super::{Falloff, LightSample, Toward, has_extent, weigh};
+use super::{Falloff, LightBounds, LightSample, Toward, has_extent, weigh};
 use crate::color::Rgb;
-use crate::math::{UnitVec3, Vec2, Vec3};
+use crate::math::{Aabb, UnitVec3, Vec2, Vec3};
 
 /// A point that shines into a cone.
 #[derive(Clone, Copy, Debug)]
@@ -53,6 +53,22 @@ impl SpotLight {
             1.0
         } else {
             ((outer - one_minus_cos) / (outer - inner)).powi(2)
+        }
+    }
+
+    /// See [`super::Light::light_bounds`].
+    pub fn light_bounds(&self) -> LightBounds {
+        let bounds = Aabb::of_points([self.position]);
+        LightBounds {
+            // Full strength in the inner cone, none beyond the outer one; a little more for rounding.
+            normals_radians: self.inner_angle_radians,
+            emission_radians: self.outer_angle_radians - self.inner_angle_radians + 1e-5,
+            ..LightBounds::flat(
+                bounds,
+                self.direction,
+                false,
+                self.intensity.luminance().into(),
+            )
         }
     }
 

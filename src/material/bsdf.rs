@@ -3,52 +3,53 @@
 use std::f32::consts::PI;
 
 use crate::color::Rgb;
-use crate::math::UnitVec3;
+use crate::math::{Frame, UnitVec3, Vec3};
 
-use super::fresnel::{fresnel_dielectric, reflect, schlick_weight};
+use super::fresnel::{fresnel_dielectric, schlick_weight};
+use super::layered::{Layered, Pair};
+use super::phong::phong_lobe;
 
 /// Scattering at one point of a surface, of either kind of material.
 ///
-/// Directions point away from the surface and are on the side of `normal`; the cosine is never
-/// included.
+/// Directions point away from the surface and the viewer's is on the side of the normal; the cosine is
+/// never included.
 #[derive(Clone, Copy, Debug)]
 pub struct Bsdf {
-    /// Reflectance of the Lambertian lobe.
-    pub diffuse: Rgb,
-    /// The lobe around the mirror direction.
-    pub glossy: Glossy,
-    /// Perfect mirror and what is let through.
+    /// What scatters light in many directions.
+    pub lobes: Lobes,
+    /// Perfect mirror and what is let through: of [`Lobes::Phong`] a part of its own; of
+    /// [`Lobes::Layered`] what a technique shows of its lobes that follows mirror rays alone.
     pub specular: Specular,
 }
 
-/// A lobe around the mirror direction.
+/// What scatters light in many directions.
 #[derive(Clone, Copy, Debug)]
-pub enum Glossy {
-    /// None.
-    None,
-    /// Phong's cosine lobe, normalised by (n+2)/(2π) so that it never makes energy
+pub enum Lobes {
+    /// Lambert's lobe and Phong's, normalised by (n+2)/(2π) so that it never makes energy
     /// (Lafortune and Willems 1994, "Using the Modified Phong Reflectance Model for Physically Based Rendering").
     Phong {
-        /// Its reflectance.
+        /// Reflectance of the Lambertian lobe.
+        diffuse: Rgb,
+        /// Reflectance of Phong's.
         reflectance: Rgb,
         /// Its exponent n, at least 0.
         exponent: f32,
     },
-    /// GGX microfacets
-    /// (Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces").
-    Ggx {
-        /// Reflectance at normal incidence.
-        f0: Rgb,
-        /// Reflectance at grazing incidence.
-        f90: f32,
-        /// Roughness α, above 0.
-        alpha: f32,
-        /// Reflectance at normal and at grazing incidence of the dielectric alone: what it
-        /// reflects does not reach the diffuse layer below.
-        dielectric: [f32; 2],
-        /// What of `f0` and `f90` no mirror ray follows.
-        unmirrored: (Rgb, f32),
-    },
+    /// glTF's layers.
+    Layered(Layered),
+}
+
+/// How a surface is seen: what scattering needs beside the material.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    /// Around the shading normal, on the viewer's side.
+    pub frame: Frame,
+    /// Normal of a coat, on the viewer's side.
+    pub coat_normal: UnitVec3,
+    /// Towards the viewer, in the world.
+    pub wo: UnitVec3,
+    /// Whether the viewer is inside of a body that light passes.
+    pub is_inside: bool,
 }
 
 /// Perfect mirror and what is let through.
@@ -64,6 +65,8 @@ pub struct Specular {
     pub index_of_refraction: f32,
     /// Whether the surface is a thin wall, which light crosses without a bend.
     pub is_thin: bool,
+    /// A coat over all of this: its share, and how much of its reflection is a mirror's.
+    pub coat: [f32; 2],
 }
 
 impl Specular {
@@ -74,136 +77,158 @@ impl Specular {
         transmit: Rgb::BLACK,
         index_of_refraction: 1.0,
         is_thin: true,
+        coat: [0.0; 2],
     };
 
     /// The shares that are mirrored and let through at `cos_o`, for `eta` as in
     /// [`fresnel_dielectric`].
     pub fn split(&self, cos_o: f32, eta: f32) -> (Rgb, Rgb) {
-        let mirrored = self.reflect + self.reflect_grazing * schlick_weight(cos_o);
-        if self.transmit.is_black() {
-            return (mirrored, Rgb::BLACK);
+        let mut mirrored = self.reflect + self.reflect_grazing * schlick_weight(cos_o);
+        let mut through = Rgb::BLACK;
+        if !self.transmit.is_black() {
+            let (reflected, refracted) = self.glass(cos_o, eta);
+            mirrored += reflected;
+            through = refracted;
         }
+        let [share, mirror] = self.coat;
+        if share > 0.0 {
+            let coat = share * super::coat::coat_fresnel(cos_o);
+            mirrored = mirrored * (1.0 - coat) + Rgb::splat(coat * mirror);
+            through = through * (1.0 - coat);
+        }
+        (mirrored, through)
+    }
+
+    /// What glass mirrors and lets through.
+    pub fn glass(&self, cos_o: f32, eta: f32) -> (Rgb, Rgb) {
         let reflected = fresnel_dielectric(cos_o, eta);
-        (
-            mirrored + self.transmit * reflected,
-            self.transmit * (1.0 - reflected),
-        )
+        (self.transmit * reflected, self.transmit * (1.0 - reflected))
     }
 
     /// Whether light that is let through keeps its direction.
     pub fn is_straight(&self) -> bool {
         self.is_thin || self.index_of_refraction == 1.0
     }
+
+    /// Index of the side beyond over the index of the viewer's side.
+    pub fn relative_index(&self, is_inside: bool) -> f32 {
+        if is_inside && !self.is_thin {
+            1.0 / self.index_of_refraction
+        } else {
+            self.index_of_refraction
+        }
+    }
 }
 
 /// A surface that gives back no light.
 pub const BLACK: Bsdf = Bsdf {
-    diffuse: Rgb::BLACK,
-    glossy: Glossy::None,
+    lobes: Lobes::Phong {
+        diffuse: Rgb::BLACK,
+        reflectance: Rgb::BLACK,
+        exponent: 1.0,
+    },
     specular: Specular::NONE,
 };
 
-impl Bsdf {
-    /// Value for light that comes from `wi` and leaves to `wo`, 1/sr.
-    pub fn eval(&self, normal: UnitVec3, wo: UnitVec3, wi: UnitVec3) -> Rgb {
-        let diffuse = self.diffuse * (1.0 / PI);
-        match self.glossy {
-            Glossy::None => diffuse,
-            Glossy::Phong {
-                reflectance,
-                exponent,
-            } => diffuse + reflectance * phong_lobe(normal, wo, wi, exponent),
-            Glossy::Ggx {
-                f0,
-                f90,
-                alpha,
-                dielectric,
-                ..
-            } => {
-                let Some(half) = UnitVec3::normalize(*wo + *wi) else {
-                    return Rgb::BLACK;
-                };
-                // In and out through the coat, each at its own angle: appendix B of the glTF
-                // specification takes both at the half vector, and makes energy at grazing views.
-                let through =
-                    entering(dielectric, normal.dot(*wo)) * entering(dielectric, normal.dot(*wi));
-                let reflected = schlick(f0, f90, wo.dot(*half));
-                diffuse * through + reflected * ggx(normal, wo, wi, half, alpha)
-            }
+impl View {
+    /// A view of a surface without bumps, from outside.
+    pub fn plain(normal: UnitVec3, wo: UnitVec3) -> Self {
+        Self {
+            frame: Frame::around(normal),
+            coat_normal: normal,
+            wo,
+            is_inside: false,
         }
+    }
+
+    /// Both directions in the coordinates of the frame.
+    pub(super) fn pair(&self, wi: UnitVec3) -> Pair {
+        Pair {
+            wo: self.frame.to_local(*self.wo),
+            wi: self.frame.to_local(*wi),
+            coat_normal: self.frame.to_local(*self.coat_normal),
+            is_inside: self.is_inside,
+        }
+    }
+}
+
+impl Bsdf {
+    /// Value for light that comes from `wi` and leaves to `wo`, 1/sr, of a surface without bumps;
+    /// perfect mirrors of glTF's layers count as very narrow lobes.
+    pub fn eval(&self, normal: UnitVec3, wo: UnitVec3, wi: UnitVec3) -> Rgb {
+        self.shown(&View::plain(normal, wo), wi)
+    }
+
+    /// As [`Bsdf::value`], for a technique that follows mirror rays, and that shows lights
+    /// without a surface in smooth mirrors: these count as very narrow lobes.
+    pub fn shown(&self, view: &View, wi: UnitVec3) -> Rgb {
+        self.lobes.value(&view.pair(wi), true)
+    }
+
+    /// Value for light that comes from `wi`, on either side, 1/sr: all lobes that have area.
+    pub fn value(&self, view: &View, wi: UnitVec3) -> Rgb {
+        self.lobes.value(&view.pair(wi), false)
     }
 
     /// Without what mirror rays see of lights that have a surface, which would count twice.
     pub fn without_mirrored(mut self) -> Self {
-        if let Glossy::Ggx {
-            f0,
-            f90,
-            unmirrored,
-            ..
-        } = &mut self.glossy
-        {
-            (*f0, *f90) = *unmirrored;
+        if let Lobes::Layered(layers) = &mut self.lobes {
+            layers.kept = layers.unmirrored;
         }
         self
     }
 
-    /// Share of uniform ambient light that is scattered to `wo`; what rays of their own bring
-    /// from mirrors and glass is left out. Phong's lobe, whose author gave it lights alone to show,
-    /// takes none.
-    pub fn ambient(&self, cos_o: f32) -> Rgb {
-        match self.glossy {
-            Glossy::None | Glossy::Phong { .. } => self.diffuse,
-            Glossy::Ggx {
-                dielectric,
-                unmirrored: (f0, f90),
-                ..
-            } => {
-                let through = entering(dielectric, cos_o) * mean_entering(dielectric);
-                self.diffuse * through + schlick(f0, f90, cos_o)
+    /// Share of the light from behind that goes on as if nothing were there, but for its colour:
+    /// what [`Bsdf::sample`] sends straight on.
+    pub fn straight(&self, view: &View) -> Rgb {
+        if !self.specular.is_straight() {
+            return Rgb::BLACK;
+        }
+        let pair = view.pair(-view.wo);
+        match &self.lobes {
+            Lobes::Layered(layers) => layers.straight(&pair),
+            Lobes::Phong { .. } => {
+                let eta = self.specular.relative_index(view.is_inside);
+                self.specular.glass(pair.wo.z, eta).1
             }
+        }
+    }
+
+    /// Whether light from the far side is scattered to the viewer.
+    pub fn is_translucent(&self) -> bool {
+        match &self.lobes {
+            Lobes::Phong { .. } => false,
+            Lobes::Layered(layers) => !layers.translucent.is_black(),
+        }
+    }
+
+    /// Share of uniform ambient light that is scattered to the viewer; what rays of their own
+    /// bring from mirrors and glass is left out. Phong's lobe, whose author gave it lights alone to
+    /// show, takes none.
+    pub fn ambient(&self, view: &View) -> Rgb {
+        match &self.lobes {
+            Lobes::Phong { diffuse, .. } => *diffuse,
+            Lobes::Layered(layers) => layers.ambient(&view.pair(view.wo)),
         }
     }
 }
 
-fn schlick(f0: Rgb, f90: f32, cos: f32) -> Rgb {
-    f0.lerp(Rgb::splat(f90), schlick_weight(cos))
-}
-
-/// Share that passes a dielectric of reflectance `f0` and `f90` to the layer below.
-fn entering([f0, f90]: [f32; 2], cos: f32) -> f32 {
-    1.0 - (f0 + (f90 - f0) * schlick_weight(cos))
-}
-
-/// Mean of [`entering`] over the hemisphere, weighted by the cosine: that of Schlick's weight is
-/// 1/21.
-fn mean_entering([f0, f90]: [f32; 2]) -> f32 {
-    1.0 - (f0 + (f90 - f0) / 21.0)
-}
-
-fn phong_lobe(normal: UnitVec3, wo: UnitVec3, wi: UnitVec3, exponent: f32) -> f32 {
-    // 1 - cos, without the cancellation that would decide the value at large exponents.
-    let deviation = 0.5 * (reflect(*wi, *normal) - *wo).length_squared();
-    if deviation >= 1.0 {
-        return 0.0;
+impl Lobes {
+    fn value(&self, pair: &Pair, has_mirrors: bool) -> Rgb {
+        match self {
+            Self::Layered(layers) => layers.value(pair, has_mirrors),
+            Self::Phong { .. } if pair.wi.z <= 0.0 || pair.wo.z <= 0.0 => Rgb::BLACK,
+            Self::Phong {
+                diffuse,
+                reflectance,
+                exponent,
+            } => {
+                let matte = *diffuse * (1.0 / PI);
+                if reflectance.is_black() {
+                    return matte;
+                }
+                matte + *reflectance * phong_lobe(Vec3::Z, pair.wo, pair.wi, *exponent)
+            }
+        }
     }
-    (exponent + 2.0) / (2.0 * PI) * (exponent * (-deviation).ln_1p()).exp()
-}
-
-/// Distribution times visibility: the lobe without its Fresnel factor.
-fn ggx(normal: UnitVec3, wo: UnitVec3, wi: UnitVec3, half: UnitVec3, alpha: f32) -> f32 {
-    let (cos_o, cos_i) = (normal.dot(*wo), normal.dot(*wi));
-    if cos_o <= 0.0 || cos_i <= 0.0 {
-        return 0.0;
-    }
-    let a2 = alpha * alpha;
-    let cos_h = normal.dot(*half);
-    // sin² from the cross product: 1 - cos² has no digits left near the peak.
-    let sin2_h = normal.cross(*half).length_squared();
-    let spread = sin2_h + a2 * cos_h * cos_h;
-    let distribution = a2 / (PI * spread * spread);
-    // Height-correlated masking and shadowing over 4 cos_o cos_i
-    // (Heitz 2014, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs").
-    let lambda_o = cos_i * (a2 + (1.0 - a2) * cos_o * cos_o).sqrt();
-    let lambda_i = cos_o * (a2 + (1.0 - a2) * cos_i * cos_i).sqrt();
-    distribution * 0.5 / (lambda_o + lambda_i)
 }

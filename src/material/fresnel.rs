@@ -1,5 +1,6 @@
 //! Reflection and refraction at the border of two media.
 
+use crate::color::Rgb;
 use crate::math::Vec3;
 
 /// Share of unpolarised light that a smooth dielectric border reflects (Fresnel's equations).
@@ -52,6 +53,11 @@ pub fn refract(wo: Vec3, normal: Vec3, eta: f32) -> Option<Vec3> {
 /// Physically-based Rendering").
 pub fn schlick_weight(cos_i: f32) -> f32 {
     (1.0 - cos_i).clamp(0.0, 1.0).powi(5)
+}
+
+/// Schlick's formula between `f0` at normal and `f90` at grazing incidence.
+pub fn schlick(f0: Rgb, f90: f32, cos_i: f32) -> Rgb {
+    f0.lerp(Rgb::splat(f90), schlick_weight(cos_i))
 }
 
 #[cfg(test)]

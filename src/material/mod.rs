@@ -2,21 +2,34 @@
 //!
 //! A [`Material`] is evaluated at an interaction and gives a [`Bsdf`]; one file a kind.
 
+mod albedo;
 mod bsdf;
+mod coat;
+mod extension;
+mod facets;
 mod fresnel;
+mod glass;
+mod iridescence;
+mod layered;
 mod lookup;
 mod metallic_roughness;
+mod microfacet;
 mod phong;
+mod sample;
+mod sheen;
 mod textures;
 
-pub use bsdf::{Bsdf, Glossy, Specular};
+pub use bsdf::{Bsdf, Lobes, Specular, View};
+pub use extension::{Anisotropy, Clearcoat, DiffuseTransmission, Iridescence, Sheen};
 pub use fresnel::{fresnel_dielectric, reflect, refract};
 pub use lookup::{Lookup, MAX_UV_SETS};
 pub use metallic_roughness::MetallicRoughness;
 pub use phong::Phong;
+pub use sample::BsdfSample;
 pub use textures::TextureSlot;
 
 use crate::color::Rgb;
+use crate::math::Vec2;
 use crate::texture::{TextureRef, TexturedRgb, TexturedScalar};
 
 /// Index of a [`Material`] in a scene.
@@ -114,6 +127,55 @@ impl Material {
             Surface::Unlit(color) => color,
         };
         lookup.rgb(color) * lookup.vertex_rgb()
+    }
+
+    /// Whether light from its far side is scattered through it.
+    pub fn is_translucent(&self) -> bool {
+        match &self.surface {
+            Surface::MetallicRoughness(surface) => surface.diffuse_transmission.is_some(),
+            Surface::Phong(_) | Surface::Unlit(_) => false,
+        }
+    }
+
+    /// Bumps of its coat; `None` where it has no coat, or a smooth one.
+    pub fn coat_normal_map(&self) -> Option<&NormalMap> {
+        match &self.surface {
+            Surface::MetallicRoughness(surface) => surface.clearcoat.as_ref()?.normal_map.as_ref(),
+            Surface::Phong(_) | Surface::Unlit(_) => None,
+        }
+    }
+
+    /// Whether it has a coat.
+    pub fn has_coat(&self) -> bool {
+        match &self.surface {
+            Surface::MetallicRoughness(surface) => surface.clearcoat.is_some(),
+            Surface::Phong(_) | Surface::Unlit(_) => false,
+        }
+    }
+
+    /// Direction in tangent space in which highlights are long; `None` where they are round.
+    pub fn grain(&self, lookup: &Lookup) -> Option<Vec2> {
+        match &self.surface {
+            Surface::MetallicRoughness(surface) => Some(surface.grain(lookup)?.0),
+            Surface::Phong(_) | Surface::Unlit(_) => None,
+        }
+    }
+
+    /// Whether it reads the tangents of a mesh.
+    pub fn reads_tangents(&self) -> bool {
+        let has_grain = match &self.surface {
+            Surface::MetallicRoughness(surface) => surface.anisotropy.is_some(),
+            Surface::Phong(_) | Surface::Unlit(_) => false,
+        };
+        has_grain || self.normal_map.is_some() || self.coat_normal_map().is_some()
+    }
+
+    /// Absorption inside a body of it, per world unit; `None` where light crosses it unchanged.
+    pub fn absorption(&self) -> Option<Rgb> {
+        match &self.surface {
+            Surface::MetallicRoughness(surface) => surface.absorption(),
+            Surface::Phong(_) | Surface::Unlit(_) => None,
+        }
     }
 
     /// Opacity in `[0, 1]` where `lookup` is: 0 lets everything pass, and masks are 0 or 1.

@@ -1,7 +1,11 @@
 //! Lambert plus normalised Phong, with mirror and refraction.
 
-use super::{Bsdf, Glossy, Lookup, Specular};
+use std::f32::consts::{PI, TAU};
+
+use super::fresnel::reflect;
+use super::{Bsdf, Lobes, Lookup, Specular};
 use crate::color::Rgb;
+use crate::math::{Frame, UnitVec3, Vec2, Vec3};
 use crate::texture::{TexturedRgb, TexturedScalar};
 
 /// The parameters of MTL files and of `kind = "phong"` in scene files.
@@ -36,24 +40,45 @@ impl Phong {
 
     /// How it scatters light where `lookup` is.
     pub fn bsdf(&self, lookup: &Lookup) -> Bsdf {
-        let reflectance = lookup.rgb(&self.specular);
         Bsdf {
-            diffuse: lookup.rgb(&self.diffuse) * lookup.vertex_rgb(),
-            glossy: if reflectance.is_black() {
-                Glossy::None
-            } else {
-                Glossy::Phong {
-                    reflectance,
-                    exponent: lookup.scalar(&self.exponent).max(0.0),
-                }
+            lobes: Lobes::Phong {
+                diffuse: lookup.rgb(&self.diffuse) * lookup.vertex_rgb(),
+                reflectance: lookup.rgb(&self.specular),
+                exponent: lookup.scalar(&self.exponent).max(0.0),
             },
             specular: Specular {
                 reflect: self.reflect,
-                reflect_grazing: Rgb::BLACK,
                 transmit: self.transmit,
                 index_of_refraction: self.index_of_refraction,
                 is_thin: false,
+                ..Specular::NONE
             },
         }
     }
+}
+
+/// Phong's lobe of reflectance 1, 1/sr, about `normal`.
+pub fn phong_lobe(normal: Vec3, wo: Vec3, wi: Vec3, exponent: f32) -> f32 {
+    // 1 - cos, without the cancellation that would decide the value at large exponents.
+    let deviation = 0.5 * (reflect(wi, normal) - wo).length_squared();
+    if deviation >= 1.0 {
+        return 0.0;
+    }
+    (exponent + 2.0) / (2.0 * PI) * (exponent * (-deviation).ln_1p()).exp()
+}
+
+/// Solid-angle density of [`around_mirror`].
+pub fn phong_pdf(wo: Vec3, wi: Vec3, exponent: f32) -> f32 {
+    phong_lobe(Vec3::Z, wo, wi, exponent) * ((exponent + 1.0) / (exponent + 2.0))
+}
+
+/// A direction around the mirror direction of `wo`, by the cosine with it to the `exponent`, in
+/// a frame whose normal is z.
+pub fn around_mirror(wo: Vec3, exponent: f32, u: Vec2) -> Vec3 {
+    // 1 - cos, as above.
+    let depth = -((1.0 - u.x).ln() / (exponent + 1.0)).exp_m1();
+    let ring = (depth * (2.0 - depth)).max(0.0).sqrt();
+    let (sin, cos) = (TAU * u.y).sin_cos();
+    let mirror = UnitVec3::from_normalized(reflect(wo, Vec3::Z));
+    Frame::around(mirror).to_world(Vec3::new(ring * cos, ring * sin, 1.0 - depth))
 }

@@ -1,6 +1,9 @@
 //! The places of a material in which a texture may stand.
 
-use super::{Material, MetallicRoughness, Phong, Surface};
+use super::{
+    Anisotropy, Clearcoat, DiffuseTransmission, Iridescence, Material, MetallicRoughness,
+    NormalMap, Phong, Sheen, Surface,
+};
 use crate::texture::TextureRef;
 
 /// What a texture of a material modulates.
@@ -30,11 +33,31 @@ pub enum TextureSlot {
     Transmission,
     /// Thickness of a volume.
     Thickness,
+    /// Share of a coat.
+    Clearcoat,
+    /// Roughness of a coat.
+    ClearcoatRoughness,
+    /// Bumps of a coat.
+    ClearcoatNormal,
+    /// Colour of fibres.
+    SheenColor,
+    /// Roughness of fibres.
+    SheenRoughness,
+    /// Direction and strength of long highlights.
+    Anisotropy,
+    /// Share of a thin film.
+    Iridescence,
+    /// Thickness of a thin film.
+    IridescenceThickness,
+    /// Share of light that a matte surface lets through.
+    DiffuseTransmission,
+    /// Its colour.
+    DiffuseTransmissionColor,
 }
 
 impl TextureSlot {
     /// All of them, each at its own number.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 22] = [
         Self::BaseColor,
         Self::Opacity,
         Self::Emission,
@@ -47,6 +70,16 @@ impl TextureSlot {
         Self::Occlusion,
         Self::Transmission,
         Self::Thickness,
+        Self::Clearcoat,
+        Self::ClearcoatRoughness,
+        Self::ClearcoatNormal,
+        Self::SheenColor,
+        Self::SheenRoughness,
+        Self::Anisotropy,
+        Self::Iridescence,
+        Self::IridescenceThickness,
+        Self::DiffuseTransmission,
+        Self::DiffuseTransmissionColor,
     ];
 }
 
@@ -104,6 +137,13 @@ fn retain_in_surface(
                 thickness,
                 attenuation_color: _,
                 attenuation_distance: _,
+                dispersion: _,
+                is_glossiness: _,
+                clearcoat,
+                sheen,
+                anisotropy,
+                iridescence,
+                diffuse_transmission,
             } = &mut **parameters;
             retain(TextureSlot::BaseColor, &mut base_color.texture);
             retain(TextureSlot::Metallic, &mut metallic.texture);
@@ -113,6 +153,46 @@ fn retain_in_surface(
             retain(TextureSlot::SpecularColor, &mut specular_color.texture);
             retain(TextureSlot::Transmission, &mut transmission.texture);
             retain(TextureSlot::Thickness, &mut thickness.texture);
+            if let Some(Clearcoat {
+                factor,
+                roughness,
+                normal_map,
+            }) = clearcoat
+            {
+                retain(TextureSlot::Clearcoat, &mut factor.texture);
+                retain(TextureSlot::ClearcoatRoughness, &mut roughness.texture);
+                let mut texture = normal_map.map(|map| map.texture);
+                retain(TextureSlot::ClearcoatNormal, &mut texture);
+                *normal_map = normal_map
+                    .zip(texture)
+                    .map(|(map, texture)| NormalMap { texture, ..map });
+            }
+            if let Some(Sheen { color, roughness }) = sheen {
+                retain(TextureSlot::SheenColor, &mut color.texture);
+                retain(TextureSlot::SheenRoughness, &mut roughness.texture);
+            }
+            if let Some(Anisotropy {
+                strength: _,
+                rotation: _,
+                texture,
+            }) = anisotropy
+            {
+                retain(TextureSlot::Anisotropy, texture);
+            }
+            if let Some(Iridescence {
+                factor,
+                index_of_refraction: _,
+                thickness: _,
+                thickness_texture,
+            }) = iridescence
+            {
+                retain(TextureSlot::Iridescence, &mut factor.texture);
+                retain(TextureSlot::IridescenceThickness, thickness_texture);
+            }
+            if let Some(DiffuseTransmission { factor, color }) = diffuse_transmission {
+                retain(TextureSlot::DiffuseTransmission, &mut factor.texture);
+                retain(TextureSlot::DiffuseTransmissionColor, &mut color.texture);
+            }
         }
         Surface::Unlit(color) => retain(TextureSlot::BaseColor, &mut color.texture),
     }

@@ -31,4 +31,13 @@ impl Frame {
     pub fn to_world(&self, v: Vec3) -> Vec3 {
         self.tangent * v.x + self.bitangent * v.y + self.normal.get() * v.z
     }
+
+    /// From the world's coordinates to the frame's.
+    pub fn to_local(&self, v: Vec3) -> Vec3 {
+        Vec3::new(
+            self.tangent.dot(v),
+            self.bitangent.dot(v),
+            self.normal.dot(v),
+        )
+    }
 }

@@ -6,6 +6,7 @@
 
 mod aabb;
 mod frame;
+mod morton;
 mod ray;
 mod rounding;
 mod unit;
@@ -13,6 +14,7 @@ mod unit;
 pub use aabb::Aabb;
 pub use frame::Frame;
 pub use glam::{Affine2, DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, Mat3, UVec2, Vec2, Vec3};
+pub use morton::morton_pixel;
 pub use ray::Ray;
 pub use rounding::{ONE_MINUS_EPSILON, UNIT_ROUNDOFF, gamma};
 pub use unit::UnitVec3;

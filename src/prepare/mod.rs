@@ -4,6 +4,7 @@
 //! over them, and lights in the same coordinates. What leaves here can be rendered without
 //! failing.
 
+mod emission;
 mod geometry;
 mod left_out;
 mod placement;
@@ -14,11 +15,13 @@ use std::cmp::Ordering;
 
 use crate::bvh::{Builder, Hit};
 use crate::camera::Camera;
+use crate::color::Rgb;
 use crate::import::{WarningCode, Warnings};
 use crate::light::Light;
-use crate::math::{Aabb, DAffine3, DVec3, Mat3, Ray, Vec3, gamma};
+use crate::math::{Aabb, DAffine3, DVec3, Mat3, Ray, UnitVec3, Vec3, gamma};
 use crate::scene::{Background, Keep, LeftOut, Omission, Placed, Scene};
 
+pub use emission::{EmissiveRun, TriangleId};
 use geometry::Geometry;
 pub use placement::Placement;
 pub use surface::Surface;
@@ -103,7 +106,8 @@ fn prepare_all(scene: &Scene, builder: Builder, flatten_budget: u64, keep: Keep)
     let prepared = PreparedScene {
         scene,
         placement,
-        bounds: (!keep.contains(Omission::Background))
+        // Nothing is known of a pixel that sees the environment.
+        bounds: (!keep.contains(Omission::Background) && scene.environment.is_none())
             .then(|| left_out::meetable(bounds, &placement, &lights)),
         lights,
         shining: left_out::shining(scene, keep),
@@ -155,6 +159,20 @@ impl PreparedScene<'_> {
         placed.item.placed(self.placement.scale as f32, offset)
     }
 
+    /// What `ray` brings back where it leaves the scene, W/(m² sr).
+    pub fn radiance_beyond(&self, ray: &Ray) -> Rgb {
+        let seen = self
+            .scene
+            .environment
+            .as_ref()
+            .zip(UnitVec3::normalize(ray.direction));
+        let environment = seen.map(|(map, direction)| map.radiance(direction));
+        match environment {
+            None => self.background.radiance,
+            Some(environment) => self.background.radiance + environment,
+        }
+    }
+
     /// A distance along a unit direction, in world units.
     pub fn world_distance(&self, prepared: f32) -> f32 {
         (f64::from(prepared) / self.placement.scale) as f32
@@ -182,6 +200,20 @@ impl PreparedScene<'_> {
         self.geometry.tracer.closest_hit_if(&rest, |hit| {
             order(hit) > order(last) && !self.is_same_crossing(ray, last, hit)
         })
+    }
+
+    /// The nearest hit of each of `rays`, into `hits`, which is as long.
+    pub fn closest_hits(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
+        self.geometry.tracer.closest_hits(rays, hits);
+    }
+
+    /// Whether something is in the way of each of `rays`, into `blocked`, which is as long; `false`, and nothing is
+    /// done, where [`Self::crossings`] may tell more than that.
+    pub fn are_blocked(&self, rays: &[Ray], blocked: &mut [bool]) -> bool {
+        if !self.has_transparency {
+            self.geometry.tracer.any_hits(rays, blocked);
+        }
+        !self.has_transparency
     }
 
     /// Whether two hits of a ray are on an edge or corner that their triangles share, and the

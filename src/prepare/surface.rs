@@ -1,11 +1,14 @@
 //! From a hit to everything that shading reads.
 
 use crate::bvh::Hit;
+use crate::color::Rgb;
 use crate::interaction::{Interaction, rounding_error};
-use crate::material::{AlphaMode, Bsdf, Lookup, MAX_UV_SETS, Material, NormalMap};
+use crate::material::{
+    AlphaMode, Bsdf, BsdfSample, Lookup, MAX_UV_SETS, Material, NormalMap, View, reflect, refract,
+};
 use crate::math::{DVec3, Frame, ONE_MINUS_EPSILON, Ray, UnitVec3, Vec2, Vec3};
 use crate::scene::{Instance, Mesh};
-use crate::texture::Encoding;
+use crate::texture::{Encoding, TextureRef};
 
 use super::PreparedScene;
 use super::geometry::Placing;
@@ -21,28 +24,98 @@ pub struct Surface<'a> {
     pub lookup: Lookup<'a>,
     /// How it scatters light there.
     pub bsdf: Bsdf,
+    /// Around the shading normal; its tangent is the direction in which highlights are long.
+    pub frame: Frame,
+    /// Normal of a coat, on the viewer's side.
+    pub coat_normal: UnitVec3,
 }
 
 impl Surface<'_> {
+    /// Value for light from `wi`, on either side, per channel and steradian: all lobes that have
+    /// area. The cosine is not included.
+    pub fn eval(&self, wi: UnitVec3) -> Rgb {
+        if self.is_torn(*wi) {
+            return Rgb::BLACK;
+        }
+        self.bsdf.value(&self.view(), wi)
+    }
+
+    /// Density per solid angle with which [`Surface::sample`] chooses `wi` by a lobe that has
+    /// area.
+    pub fn pdf(&self, wi: UnitVec3) -> f32 {
+        if self.is_torn(*wi) {
+            return 0.0;
+        }
+        self.bsdf.pdf(&self.view(), wi)
+    }
+
+    /// Draws a direction for two independent numbers `u_lobe` in `[0, 1)` and `u` in its square;
+    /// `None` where nothing comes from the one that was drawn.
+    pub fn sample(&self, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
+        let drawn = self.bsdf.sample(&self.view(), u_lobe, u)?;
+        if !self.is_torn(*drawn.wi) {
+            return Some(drawn);
+        }
+        // Mirrors and glass would show holes: they follow the triangle where their own normal
+        // sends light through it.
+        let at = &self.interaction;
+        let normal = *at.geometric_normal;
+        let wi = match drawn.is_transmitted {
+            _ if !drawn.is_specular => return None,
+            true => refract(*at.wo, normal, self.relative_index())?,
+            false => reflect(*at.wo, normal),
+        };
+        let wi = UnitVec3::normalize(wi)?;
+        Some(BsdfSample { wi, ..drawn })
+    }
+
+    /// Absorption inside the body, per world unit; `None` where light crosses it unchanged.
+    pub fn absorption(&self) -> Option<Rgb> {
+        self.material.absorption()
+    }
+
+    /// Whether `wi` is above the shading normal's horizon and below the triangle's, or the other
+    /// way round.
+    fn is_torn(&self, wi: Vec3) -> bool {
+        let at = &self.interaction;
+        (at.geometric_normal.dot(wi) > 0.0) != (at.shading_normal.dot(wi) > 0.0)
+    }
+
+    /// Share of the light from behind that goes on as if nothing were there, but for its colour:
+    /// what [`Surface::sample`] sends straight on.
+    pub fn straight(&self) -> Rgb {
+        self.bsdf.straight(&self.view())
+    }
+
+    /// As the viewer sees it.
+    pub fn view(&self) -> View {
+        View {
+            frame: self.frame,
+            coat_normal: self.coat_normal,
+            wo: self.interaction.wo,
+            is_inside: self.is_inside(),
+        }
+    }
+
+    /// Whether the viewer is inside of a body that light passes.
+    pub fn is_inside(&self) -> bool {
+        !self.interaction.is_front && self.material.is_glass() && !self.bsdf.specular.is_thin
+    }
+
     /// Index of refraction of the side beyond over the index of the viewer's side.
     pub fn relative_index(&self) -> f32 {
-        let specular = &self.bsdf.specular;
-        if self.interaction.is_front || specular.is_thin {
-            specular.index_of_refraction
-        } else {
-            1.0 / specular.index_of_refraction
-        }
+        self.bsdf.specular.relative_index(self.is_inside())
     }
 }
 
 /// A hit traced back to the scene's own triangle.
-struct Located<'a> {
+pub(super) struct Located<'a> {
     instance: &'a Instance,
     instance_number: u32,
-    mesh: &'a Mesh,
-    corners: [u32; 3],
+    pub mesh: &'a Mesh,
+    pub corners: [u32; 3],
     /// Weights of the corners; they add up to 1.
-    weights: [f32; 3],
+    pub weights: [f32; 3],
 }
 
 impl Located<'_> {
@@ -67,7 +140,7 @@ fn mix4(a: [f32; 4], wa: f32, b: [f32; 4], wb: f32, c: [f32; 4], wc: f32) -> [f3
 }
 
 impl<'a> PreparedScene<'a> {
-    fn locate(&self, hit: &Hit) -> Located<'a> {
+    pub(super) fn locate(&self, hit: &Hit) -> Located<'a> {
         let traced = &self.geometry.traced[hit.instance as usize];
         let (instance_number, triangle) = match &traced.placing {
             Placing::Flattened(parts) => {
@@ -88,7 +161,7 @@ impl<'a> PreparedScene<'a> {
         }
     }
 
-    fn lookup(&self, at: &Located) -> Lookup<'a> {
+    pub(super) fn lookup(&self, at: &Located) -> Lookup<'a> {
         let mut uvs = [Vec2::ZERO; MAX_UV_SETS];
         for (uv, set) in uvs.iter_mut().zip(at.mesh.uv_sets()) {
             *uv = at.interpolate(set, mix2);
@@ -111,7 +184,7 @@ impl<'a> PreparedScene<'a> {
         self.locate(hit).instance_number
     }
 
-    fn material(&self, at: &Located) -> &'a Material {
+    pub(super) fn material(&self, at: &Located) -> &'a Material {
         &self.scene.materials[at.instance.material.0 as usize]
     }
 
@@ -149,7 +222,7 @@ impl<'a> PreparedScene<'a> {
     }
 
     /// -1 where the instance mirrors its mesh, else 1.
-    fn orientation(&self, at: &Located) -> f32 {
+    pub(super) fn orientation(&self, at: &Located) -> f32 {
         self.orientation[at.instance_number as usize]
     }
 
@@ -175,20 +248,36 @@ impl<'a> PreparedScene<'a> {
         let is_front = outward.dot(*wo) >= 0.0;
         let geometric_normal = if is_front { outward } else { -outward };
         let smooth = self.smooth_normal(&at).unwrap_or(outward);
-        let bumped = match &material.normal_map {
+        let bent = |map: Option<&NormalMap>| match map {
             Some(map) => self.bumped(map, &at, &lookup, edges, smooth),
             None => smooth,
         };
+        let seen = |normal| facing(normal, geometric_normal, wo);
+        let shading_normal = seen(bent(material.normal_map.as_ref()));
+        let coat_normal = match material.has_coat() {
+            true => seen(bent(material.coat_normal_map())),
+            false => shading_normal,
+        };
+        let grain = material.grain(&lookup).and_then(|grain| {
+            let map = material.normal_map.map(|map| map.texture);
+            let frame = self
+                .vertex_frame(&at, smooth)
+                .or_else(|| texture_frame(map.as_ref(), &at, edges, smooth))?;
+            let along = frame.tangent * grain.x + frame.bitangent * grain.y;
+            frame_along(shading_normal, along, 1.0)
+        });
         Surface {
             bsdf: material.bsdf(&lookup),
             interaction: Interaction {
                 point,
                 point_error: self.point_error(hit, ray, point),
                 geometric_normal,
-                shading_normal: facing(bumped, geometric_normal, wo),
+                shading_normal,
                 wo,
                 is_front,
             },
+            frame: grain.unwrap_or_else(|| Frame::around(shading_normal)),
+            coat_normal,
             material,
             lookup,
         }
@@ -241,7 +330,7 @@ impl<'a> PreparedScene<'a> {
         let tangent_space = self.map_normal(map, lookup);
         let frame = self
             .vertex_frame(at, normal)
-            .or_else(|| texture_frame(map, at, edges, normal))
+            .or_else(|| texture_frame(Some(&map.texture), at, edges, normal))
             .unwrap_or_else(|| Frame::around(normal));
         UnitVec3::normalize(frame.to_world(tangent_space)).unwrap_or(normal)
     }
@@ -287,17 +376,20 @@ impl<'a> PreparedScene<'a> {
     }
 }
 
-/// The frame whose tangent follows u of the map's own texture coordinates.
+/// The frame whose tangent follows u of the texture coordinates that `map` is read with; without
+/// one, of the first.
 fn texture_frame(
-    map: &NormalMap,
+    map: Option<&TextureRef>,
     at: &Located,
     edges: [DVec3; 2],
     normal: UnitVec3,
 ) -> Option<Frame> {
-    let uvs = at.mesh.uv_sets().get(usize::from(map.texture.uv_set))?;
-    let [a, b, c] = at
-        .corners
-        .map(|i| map.texture.transform.transform_point2(uvs[i as usize]));
+    let set = map.map_or(0, |map| usize::from(map.uv_set));
+    let uvs = at.mesh.uv_sets().get(set)?;
+    let [a, b, c] = at.corners.map(|i| {
+        let uv = uvs[i as usize];
+        map.map_or(uv, |map| map.transform.transform_point2(uv))
+    });
     let (d1, d2) = ((b - a).as_dvec2(), (c - a).as_dvec2());
     let determinant = d1.perp_dot(d2);
     if determinant == 0.0 {

@@ -59,7 +59,16 @@ struct Class {
     weight: f64,
 }
 
-type Classes = BTreeMap<Share, Class>;
+impl Class {
+    fn add(&mut self, other: &Self) {
+        self.count += other.count;
+        self.cost += other.cost;
+        self.weight += other.weight;
+    }
+}
+
+/// In the order of their shares.
+type Classes = Vec<(Share, Class)>;
 
 /// How many samples each half of each pixel is to get.
 pub(super) struct Allotment {
@@ -69,7 +78,7 @@ pub(super) struct Allotment {
     pixels: u64,
     /// Of each tile, two for a pixel.
     shares: Vec<Vec<Share>>,
-    classes: Vec<(Share, Class)>,
+    classes: Classes,
 }
 
 /// What comes of a number of samples.
@@ -110,12 +119,9 @@ impl Allotment {
             .into_par_iter()
             .map(|measured| measured.shares(film_factor, exponent))
             .unzip();
-        let mut classes = Classes::new();
+        let mut classes = BTreeMap::<Share, Class>::new();
         for (share, class) in by_tile.iter().flatten() {
-            let sum = classes.entry(*share).or_default();
-            sum.count += class.count;
-            sum.cost += class.cost;
-            sum.weight += class.weight;
+            classes.entry(*share).or_default().add(class);
         }
         Self {
             pattern,
@@ -214,18 +220,28 @@ struct Difficulty {
 
 impl Difficulty {
     fn of(film: Rect, tiles: &[Tile]) -> Self {
-        let mut halves = vec![[0.0; 2]; film.area() as usize];
-        let by_tile: Vec<Vec<[f32; 2]>> = tiles
-            .par_iter()
-            .map(|tile| tile.pixels.iter().map(variation).collect())
-            .collect();
-        for (tile, of) in tiles.iter().zip(by_tile) {
-            for (pixel, value) in tile.rect().pixels().zip(of) {
-                let (x, y) = (pixel.x - film.x, pixel.y - film.y);
-                halves[(y * film.width + x) as usize] = value;
+        let mut seen = vec![[Seen::default(); 2]; film.area() as usize];
+        for tile in tiles {
+            for (pixel, place) in tile.pixels.iter().zip(tile.rect().pixels()) {
+                let (x, y) = (place.x - film.x, place.y - film.y);
+                seen[(y * film.width + x) as usize] = Seen::of(pixel);
             }
         }
-        Self { film, halves }
+        let rows = (0..film.height).into_par_iter();
+        let halves = rows.flat_map_iter(|y| {
+            let seen = &seen;
+            (0..film.width).map(move |x| {
+                let own = &seen[(y * film.width + x) as usize];
+                [0, 1].map(|half| match own[half].variation {
+                    Some(variation) => variation,
+                    None => own[half].weights * spread(film, seen, half, x, y),
+                })
+            })
+        });
+        Self {
+            film,
+            halves: halves.collect(),
+        }
     }
 
     /// For each half of the pixel in column `x` and row `y`: what the other half, which has `taken`
@@ -242,28 +258,64 @@ impl Difficulty {
     /// The mean over both halves of the pixels around.
     fn around(&self, x: u32, y: u32) -> f32 {
         let (mut sum, mut count) = (0.0, 0.0);
-        for row in y.saturating_sub(1)..(y + 2).min(self.film.height) {
-            for column in x.saturating_sub(1)..(x + 2).min(self.film.width) {
-                if (column, row) != (x, y) {
-                    let [a, b] = self.halves[(row * self.film.width + column) as usize];
-                    sum += a + b;
-                    count += 2.0;
-                }
+        for (column, row) in neighbourhood(self.film, x, y) {
+            if (column, row) != (x, y) {
+                let [a, b] = self.halves[(row * self.film.width + column) as usize];
+                sum += a + b;
+                count += 2.0;
             }
         }
         if count > 0.0 { sum / count } else { 0.0 }
     }
 }
 
-/// The variance of the samples of each half, in units of the metric, summed over the channels.
-fn variation(pixel: &Pixel) -> [f32; 2] {
-    let of = |half: &Moments| {
-        let weights = relative_weights(half.mean());
-        let variance = half.sample_variance();
-        let weighted = variance.iter().zip(weights).map(|(v, w)| v * w);
-        weighted.sum::<f64>() as f32
-    };
-    [of(&pixel.halves()[0]), of(&pixel.halves()[1])]
+/// What a half of a pixel has seen.
+#[derive(Clone, Copy, Default)]
+struct Seen {
+    mean: [f32; 3],
+    /// What the metric multiplies squares by, the mean of the channels.
+    weights: f32,
+    /// The variance of its samples in units of the metric, summed over the channels; `None` where there is but one.
+    variation: Option<f32>,
+}
+
+impl Seen {
+    fn of(pixel: &Pixel) -> [Self; 2] {
+        let of = |half: &Moments| {
+            let weights = relative_weights(half.mean());
+            let variance = half.sample_variance();
+            let weighted = variance.iter().zip(weights).map(|(v, w)| v * w);
+            Self {
+                mean: half.mean().map(|c| c as f32),
+                weights: (weights.iter().sum::<f64>() / 3.0) as f32,
+                variation: (half.count() > 1).then(|| weighted.sum::<f64>() as f32),
+            }
+        };
+        [of(&pixel.halves()[0]), of(&pixel.halves()[1])]
+    }
+}
+
+/// The pixel in column `x` and row `y`, and those around it.
+fn neighbourhood(film: Rect, x: u32, y: u32) -> impl Iterator<Item = (u32, u32)> {
+    let columns = x.saturating_sub(1)..(x + 2).min(film.width);
+    let rows = y.saturating_sub(1)..(y + 2).min(film.height);
+    rows.flat_map(move |row| columns.clone().map(move |column| (column, row)))
+}
+
+/// The variance of what one half has seen in a neighbourhood, summed over the channels: all there is
+/// to go by where each pixel has a single sample.
+fn spread(film: Rect, seen: &[[Seen; 2]], half: usize, x: u32, y: u32) -> f32 {
+    let (mut sums, mut squares, mut count) = ([0.0; 3], 0.0, 0.0);
+    for (column, row) in neighbourhood(film, x, y) {
+        let mean = seen[(row * film.width + column) as usize][half].mean;
+        for (sum, c) in sums.iter_mut().zip(mean) {
+            *sum += c;
+            squares += c * c;
+        }
+        count += 1.0;
+    }
+    let of_means: f32 = sums.iter().map(|sum| sum * sum).sum::<f32>() / count;
+    ((squares - of_means) / f32::max(count - 1.0, 1.0)).max(0.0)
 }
 
 /// What a tile's samples say before the tile is compared with the film.
@@ -328,7 +380,7 @@ impl<'a> Measured<'a> {
         let cost = (self.tile.rays.total() as f64 / taken(self.tile).max(1.0)).max(1.0);
         let power = 1.0 / (1.0 + exponent);
         let mut shares = Vec::with_capacity(2 * self.difficulty.len());
-        let mut classes = Classes::new();
+        let mut classes = Vec::with_capacity(2 * self.difficulty.len());
         for (taken, difficulty) in self.tile.taken.iter().zip(&self.difficulty) {
             for half in 0..2 {
                 let weight = 0.25 * factor * f64::from(difficulty[half]);
@@ -337,13 +389,23 @@ impl<'a> Measured<'a> {
                     score: (STEPS_PER_OCTAVE * score).round() as i16,
                     taken: taken[half],
                 };
-                let class = classes.entry(share).or_default();
-                class.count += 1;
-                class.cost += cost;
-                class.weight += weight;
                 shares.push(share);
+                let class = Class {
+                    count: 1,
+                    cost,
+                    weight,
+                };
+                classes.push((share, class));
             }
         }
+        classes.sort_by_key(|(share, _)| *share);
+        classes.dedup_by(|(share, class), (kept_share, kept)| {
+            let is_same = share == kept_share;
+            if is_same {
+                kept.add(class);
+            }
+            is_same
+        });
         (shares, classes)
     }
 }

@@ -35,9 +35,9 @@ use stop::Stop;
 use tile::{Halves, Tile, assemble, error_of, tiles};
 
 /// Samples of each half of each pixel before an error is believed and samples are allotted.
-const FIRST_SAMPLES: u32 = 4;
+const FIRST_SAMPLES: u32 = 1;
 /// By what a pass multiplies the number of samples, where somebody waits for a limit.
-const GROWTH: f64 = 1.5;
+const GROWTH: f64 = 2.0;
 /// The least by which a pass multiplies it; the first that adds a sample.
 const LEAST_GROWTHS: [f64; 4] = [1.02, 1.3, 2.0, 4.0];
 /// The share of the work after which a forecast is made.

@@ -6,15 +6,17 @@ use super::stop::Stop;
 use crate::camera::{CameraRays, film_position};
 use crate::color::Rgb;
 use crate::film::{ErrorSums, Film, Pixel, RayCounts, Rect, RejectedSample, StoppedBy};
-use crate::integrate::{Account, Aov, FirstSurface, Integrator, RayLog, Sight, Source};
-use crate::math::{Ray, UVec2, Vec2};
+use crate::integrate::{
+    Account, Aov, CameraSample, FirstSurface, Integrator, RayLog, Sight, Source,
+};
+use crate::math::{Ray, UVec2, Vec2, morton_pixel};
 use crate::sampling::Sampler;
 
 /// Pixels along the edge of a tile.
 pub(super) const TILE: u32 = 16;
 
-/// Samples between two looks at the clock.
-const SAMPLES_PER_LOOK: u64 = 8;
+/// Samples that are taken together, and between two looks at the clock.
+const BATCH: usize = 64;
 
 /// Numbers of samples of the two halves of a pixel.
 pub(super) type Halves = [u32; 2];
@@ -75,52 +77,79 @@ impl Tile {
         account: Option<&Account>,
         stop: &Stop,
     ) -> u64 {
-        let sets = job.settings.sampling.pattern.sets();
-        let rays = job.camera.rays(job.settings.size);
-        let mut log = RayLog {
-            account: account.cloned(),
-            ..RayLog::default()
-        };
+        let mut batch = Batch::new(job, integrator, account);
+        // What a sample tells that sees nothing but the background.
+        let beyond = account.cloned().map(|mut account| {
+            account.add(Source::Background, 0, integrator.background());
+            account
+        });
         let mut done = 0;
-        'pixels: for (i, pixel) in self.rect.pixels().enumerate() {
+        'pixels: for (i, pixel) in self.pixels_by_neighbourhood() {
             let is_beyond = foreground.is_beyond(pixel);
             for half in 0..2 {
-                for sample in self.taken[i][half]..self.goal[i][half] {
-                    if stop.is_cancelled() || (done % SAMPLES_PER_LOOK == 0 && stop.is_late()) {
+                for number in self.taken[i][half]..self.goal[i][half] {
+                    if done % BATCH as u64 == 0 && (stop.is_cancelled() || stop.is_late()) {
                         break 'pixels;
                     }
-                    let index = sample * sets + half as u32;
-                    let sample = (!is_beyond).then(|| camera_sample(job, &rays, pixel, index));
-                    if let Some(account) = &mut log.account {
-                        account.clear();
-                    }
-                    let value = match &sample {
-                        Some((ray, sampler)) => integrator.radiance(ray, sampler, &mut log),
-                        None => {
-                            log.counts.camera += 1;
-                            let radiance = integrator.background();
-                            log.light(Source::Background, 0, Rgb::WHITE, radiance);
-                            radiance
-                        }
-                    };
-                    if self.pixels[i].add_sample(half, value) {
-                        if let Some(account) = &log.account {
-                            let ray = sample.as_ref().map(|(ray, _)| ray);
-                            self.add_layers(job, [i, half], ray, account);
-                        }
-                    } else {
-                        self.rejected += 1;
-                        let sample = RejectedSample { pixel, index };
-                        self.first_rejected = self.first_rejected.or(Some(sample));
-                    }
-                    self.taken[i][half] += 1;
                     done += 1;
+                    if is_beyond {
+                        batch.log.counts.camera += 1;
+                        self.pixels[i].add_sample(half, integrator.background());
+                        if let Some(account) = &beyond {
+                            self.add_layers(job, [i, half], None, account);
+                        }
+                        self.taken[i][half] += 1;
+                        continue;
+                    }
+                    batch.add(i, half, pixel, number);
+                    if batch.samples.len() == BATCH {
+                        self.take(job, &mut batch);
+                    }
                 }
             }
         }
-        self.rays.add(&log.counts);
+        self.take(job, &mut batch);
+        self.rays.add(&batch.log.counts);
         self.error = self.error_sums();
         done
+    }
+
+    /// Its pixels with their places in its vectors, neighbours near each other: what is traced together is to
+    /// be near.
+    fn pixels_by_neighbourhood(&self) -> impl Iterator<Item = (usize, UVec2)> + use<> {
+        let rect = self.rect;
+        (0..TILE * TILE).filter_map(move |code| {
+            let UVec2 { x, y } = morton_pixel(code);
+            let place = (y * rect.width + x) as usize;
+            let pixel = UVec2::new(rect.x + x, rect.y + y);
+            (x < rect.width && y < rect.height).then_some((place, pixel))
+        })
+    }
+
+    /// Takes the samples of `batch`, and empties it.
+    fn take(&mut self, job: &Job, batch: &mut Batch) {
+        batch.trace();
+        let all = (batch.places.iter().zip(&batch.samples)).zip(&batch.radiances);
+        for (number, ((place, sample), value)) in all.enumerate() {
+            let Place {
+                i,
+                half,
+                index,
+                pixel,
+            } = *place;
+            if self.pixels[i].add_sample(half, *value) {
+                if let Some(account) = batch.log.accounts.get(number) {
+                    self.add_layers(job, [i, half], Some(&sample.ray), account);
+                }
+            } else {
+                self.rejected += 1;
+                let sample = RejectedSample { pixel, index };
+                self.first_rejected = self.first_rejected.or(Some(sample));
+            }
+            self.taken[i][half] += 1;
+        }
+        batch.places.clear();
+        batch.samples.clear();
     }
 
     /// Adds what `account` tells of a sample along `ray` to the layers, at a pixel's number and half; `None`
@@ -160,6 +189,65 @@ impl Tile {
             sums.add(pixel.relative_squared_error()?);
         }
         Some(sums)
+    }
+}
+
+/// Samples that are taken together.
+struct Batch<'a> {
+    job: &'a Job<'a>,
+    integrator: &'a dyn Integrator,
+    rays: CameraRays<'a>,
+    samples: Vec<CameraSample>,
+    /// Where each of them goes.
+    places: Vec<Place>,
+    radiances: Vec<Rgb>,
+    log: RayLog,
+}
+
+/// Where a sample goes.
+#[derive(Clone, Copy)]
+struct Place {
+    /// The pixel's place in the vectors of its tile.
+    i: usize,
+    half: usize,
+    pixel: UVec2,
+    /// Its index among all samples of the pixel.
+    index: u32,
+}
+
+impl<'a> Batch<'a> {
+    fn new(job: &'a Job, integrator: &'a dyn Integrator, account: Option<&Account>) -> Self {
+        Self {
+            job,
+            integrator,
+            rays: job.camera.rays(job.settings.size),
+            samples: Vec::with_capacity(BATCH),
+            places: Vec::with_capacity(BATCH),
+            radiances: Vec::with_capacity(BATCH),
+            log: RayLog::told(account.map_or(Vec::new(), |account| vec![account.clone(); BATCH])),
+        }
+    }
+
+    /// Adds sample `number` of a half of a pixel.
+    fn add(&mut self, i: usize, half: usize, pixel: UVec2, number: u32) {
+        let sets = self.job.settings.sampling.pattern.sets();
+        let index = number * sets + half as u32;
+        let (ray, sampler) = camera_sample(self.job, &self.rays, pixel, index);
+        self.samples.push(CameraSample { ray, sampler });
+        self.places.push(Place {
+            i,
+            half,
+            pixel,
+            index,
+        });
+    }
+
+    fn trace(&mut self) {
+        self.radiances.clear();
+        let told = self.log.accounts.iter_mut().take(self.samples.len());
+        told.for_each(Account::clear);
+        self.integrator
+            .radiances(&self.samples, &mut self.radiances, &mut self.log);
     }
 }
 

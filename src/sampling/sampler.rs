@@ -41,6 +41,21 @@ impl DimensionSet {
     fn light(vertex: u32, light: u32) -> Self {
         Self(u64::from(vertex) << 32 | u64::from(light))
     }
+
+    /// What happens at the path's vertex number `vertex`, beside its light: in the place of lights
+    /// that there are never so many of.
+    fn event(vertex: u32, event: Event) -> Self {
+        Self::light(vertex, u32::MAX - event as u32)
+    }
+}
+
+/// What a path needs numbers for at each of its vertices.
+#[derive(Clone, Copy, Debug)]
+enum Event {
+    Direction,
+    Lobe,
+    LightChoice,
+    Crossing,
 }
 
 impl Sampler {
@@ -92,6 +107,44 @@ impl Sampler {
             (Pattern::Sobol, 1, 0) => {
                 self.sobol(DimensionSet::CAMERA, u64::from(self.index), Pair::Second)
             }
+            _ => self.point(set),
+        }
+    }
+
+    /// In which direction a path goes on from its vertex number `vertex`, in `[0, 1)²`.
+    pub fn direction(&self, vertex: u32) -> Vec2 {
+        self.even(DimensionSet::event(vertex, Event::Direction))
+    }
+
+    /// By which lobe of the material it goes on from there, and whether it goes on at all; both in
+    /// `[0, 1)`. For Sobol points these and [`Self::direction`] form one four-dimensional set.
+    pub fn lobe_and_survival(&self, vertex: u32) -> [f32; 2] {
+        let u = match self.pattern {
+            Pattern::Sobol => {
+                let set = DimensionSet::event(vertex, Event::Direction);
+                self.sobol(set, u64::from(self.index), Pair::Second)
+            }
+            _ => self.even(DimensionSet::event(vertex, Event::Lobe)),
+        };
+        u.into()
+    }
+
+    /// Which of many lights it looks at from there, in `[0, 1)`, with more digits than a single has.
+    pub fn light_choice(&self, vertex: u32) -> f64 {
+        let u = self.even(DimensionSet::event(vertex, Event::LightChoice));
+        f64::from(u.x) + f64::from(u.y) * (1.0 / (1 << 24) as f64)
+    }
+
+    /// Whether it crosses a surface that covers only a part of what is behind, in `[0, 1)`.
+    pub fn crossing(&self, vertex: u32) -> f32 {
+        self.even(DimensionSet::event(vertex, Event::Crossing)).x
+    }
+
+    /// As [`Self::point`], but jittered where the pattern is a grid: a path takes so many numbers
+    /// that whole cells of what it may do would be left out.
+    fn even(&self, set: DimensionSet) -> Vec2 {
+        match self.pattern {
+            Pattern::Grid => self.cells.point(self.key.with(set.0), self.index, true),
             _ => self.point(set),
         }
     }

@@ -13,6 +13,8 @@ pub struct Needs {
     pub normals: bool,
     /// Their colours.
     pub albedo: bool,
+    /// How much ambient light comes to them.
+    pub ambient: bool,
     /// Their first texture coordinates, whatever textures there are.
     pub uv: bool,
 }
@@ -22,10 +24,11 @@ impl Needs {
     pub fn of(integrator: IntegratorKind) -> Self {
         let nothing = Self::default();
         match integrator {
-            IntegratorKind::Whitted => Self {
+            IntegratorKind::Whitted | IntegratorKind::Path => Self {
                 scattering: true,
                 normals: true,
                 albedo: true,
+                ambient: integrator == IntegratorKind::Whitted,
                 uv: false,
             },
             IntegratorKind::Normal => Self {
@@ -46,6 +49,7 @@ impl Needs {
             scattering: self.scattering || other.scattering,
             normals: self.normals || other.normals,
             albedo: self.albedo || other.albedo,
+            ambient: self.ambient || other.ambient,
             uv: self.uv || other.uv,
         }
     }

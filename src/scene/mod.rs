@@ -18,7 +18,7 @@ pub use settings::{
 use rayon::prelude::*;
 
 use crate::camera::Camera;
-use crate::light::Light;
+use crate::light::{Environment, Light};
 use crate::material::{Material, MaterialId};
 use crate::math::{DAffine3, DVec3};
 use crate::texture::{Image, Texture};
@@ -44,6 +44,8 @@ pub struct Scene {
     pub animations: usize,
     /// What rays bring back that leave the scene.
     pub background: Background,
+    /// A picture of the surroundings, which is added to the background.
+    pub environment: Option<Environment>,
 }
 
 /// A mesh placed in the world.
@@ -110,7 +112,11 @@ impl Scene {
     pub fn memory_bytes(&self) -> usize {
         let meshes: usize = self.meshes.iter().map(Mesh::memory_bytes).sum();
         let images: usize = self.images.iter().map(Image::memory_bytes).sum();
-        meshes + images
+        let environment = self
+            .environment
+            .as_ref()
+            .map_or(0, Environment::memory_bytes);
+        meshes + images + environment
     }
 }
 

@@ -31,6 +31,8 @@ pub enum IntegratorKind {
     /// (Whitted 1980, "An Improved Illumination Model for Shaded Display").
     #[default]
     Whitted,
+    /// All light, by whatever way it comes (Kajiya 1986, "The Rendering Equation").
+    Path,
     /// Shading normals, mapped from `[-1, 1]` to `[0, 1]`.
     Normal,
     /// Distance along the ray, in metres.
@@ -41,12 +43,19 @@ pub enum IntegratorKind {
 
 impl IntegratorKind {
     /// All of them.
-    pub const ALL: &[Self] = &[Self::Whitted, Self::Normal, Self::Depth, Self::Albedo];
+    pub const ALL: &[Self] = &[
+        Self::Whitted,
+        Self::Path,
+        Self::Normal,
+        Self::Depth,
+        Self::Albedo,
+    ];
 
     /// As in scene files and on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Whitted => "whitted",
+            Self::Path => "path",
             Self::Normal => "normal",
             Self::Depth => "depth",
             Self::Albedo => "albedo",
@@ -96,6 +105,9 @@ pub struct Settings {
     pub max_depth: u32,
     /// Shadow rays per shading point, in place of what each light says.
     pub light_samples: Option<u32>,
+    /// The most radiance in any channel that light brings which was scattered more than once (`path`);
+    /// `None` leaves it as it is.
+    pub clamp: Option<f32>,
     /// Whether the camera sees nothing where it sees the background: the picture is what is before it.
     pub transparent: bool,
 }
@@ -108,6 +120,7 @@ impl Default for Settings {
             integrator: IntegratorKind::Whitted,
             max_depth: 8,
             light_samples: None,
+            clamp: None,
             transparent: false,
         }
     }

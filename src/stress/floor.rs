@@ -7,7 +7,7 @@ use crate::light::{DiskLight, Light};
 use crate::material::Material;
 use crate::math::{UVec2, UnitVec3, Vec3};
 use crate::sampling::{Pattern, SamplingConfig};
-use crate::scene::{Scene, Settings};
+use crate::scene::{IntegratorKind, Scene, Settings};
 
 use super::scenes::{add_quad, radiance};
 
@@ -29,6 +29,14 @@ pub fn settings(samples: u32, pattern: Pattern) -> Settings {
             ..SamplingConfig::default()
         },
         ..Settings::default()
+    }
+}
+
+/// 64 samples by `path`.
+pub fn paths(pattern: Pattern) -> Settings {
+    Settings {
+        integrator: IntegratorKind::Path,
+        ..settings(64, pattern)
     }
 }
 

@@ -8,7 +8,7 @@ use crate::bvh::Builder;
 use crate::camera::{Camera, Projection};
 use crate::color::Rgb;
 use crate::film::{Film, Rect};
-use crate::integrate::{Integrator, RayLog, Whitted};
+use crate::integrate::{RayLog, integrator};
 use crate::light::{Falloff, Light, PointLight};
 use crate::material::{Material, MaterialId, MetallicRoughness, Phong, Surface};
 use crate::math::{DAffine3, DVec3, Ray, UVec2, UnitVec3, Vec3};
@@ -17,6 +17,7 @@ use crate::render::{Job, render};
 use crate::sampling::Sampler;
 use crate::scene::{Instance, Mesh, MeshId, Placed, Scene, Settings};
 use crate::texture::{Filter, Image, ImageId, Pixels, Texture, TextureId, TextureRef, Wrap};
+use rayon::prelude::*;
 use std::sync::atomic::AtomicBool;
 
 /// Adds a mesh with its own material.
@@ -184,7 +185,7 @@ pub fn radiance_in(
 ) -> Rgb {
     let origin = prepared.placement.point(origin.as_dvec3());
     let direction = UnitVec3::normalize(direction).expect("a direction");
-    let integrator = Whitted::new(prepared, settings);
+    let integrator = integrator(prepared, settings);
     let mut log = RayLog::default();
     let count = settings.sampling.samples_per_pixel();
     let mut sum = [0.0f64; 3];
@@ -197,6 +198,23 @@ pub fn radiance_in(
         }
     }
     Rgb::from(sum.map(|s| (s / f64::from(count)) as f32))
+}
+
+/// Green of [`radiance`] for `count` seeds in a row.
+pub fn means(
+    scene: &Scene,
+    origin: Vec3,
+    direction: Vec3,
+    settings: &Settings,
+    count: u64,
+) -> Vec<f64> {
+    let prepared = prepare(scene, Builder::default()).scene;
+    let mean = |seed| {
+        let mut settings = settings.clone();
+        settings.sampling.seed = seed;
+        f64::from(radiance_in(&prepared, origin, direction, &settings).g)
+    };
+    (0..count).into_par_iter().map(mean).collect()
 }
 
 /// A pinhole at `position` that looks at `target`.

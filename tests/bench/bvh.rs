@@ -95,6 +95,7 @@ fn all_builders_and_widths_find_the_same() {
     let triangles = triangles(folder.path());
     let sets = own_rays(&triangles, 32).unwrap();
     let plan = Plan {
+        together: true,
         builders: Builder::ALL.to_vec(),
         widths: Width::available(),
         threads: vec![1, 3],

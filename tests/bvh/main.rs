@@ -8,6 +8,7 @@ mod builders;
 mod degenerate;
 mod instances;
 mod meshes;
+mod packets;
 mod reference;
 mod slivers;
 mod watertight;

@@ -14,6 +14,10 @@ const ASKS: &[Ask] = &[
         layers: &[],
     },
     Ask {
+        integrator: "path",
+        layers: &[],
+    },
+    Ask {
         integrator: "normal",
         layers: &[],
     },

@@ -78,6 +78,18 @@ fn a_picture_reads_no_image_that_only_hidden_surfaces_name() {
 }
 
 #[test]
+fn paths_read_all_but_what_dims_ambient_light() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = document::write(folder.path());
+    let unread = left_out(&path, "path", &[]);
+    assert_eq!(
+        images(&unread),
+        ["occlusion", "hidden", "unnamed", "dark", "broken"]
+    );
+    assert_eq!(attributes(&unread), [""; 0]);
+}
+
+#[test]
 fn views_read_what_they_show() {
     let folder = tempfile::tempdir().unwrap();
     let path = document::write(folder.path());

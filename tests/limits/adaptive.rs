@@ -42,7 +42,7 @@ fn one_two_and_seven_threads_give_the_same_bits() {
                 });
                 let (least, mean, most) = films[0].sample_counts();
                 assert!(
-                    least >= 8 && mean < most as f64,
+                    least >= 2 && mean < most as f64,
                     "{pattern:?}: {least} {mean} {most}"
                 );
                 for other in &films[1..] {

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 mod defaults;
+mod environment;
 mod files;
 mod meaning;
 mod mistakes;

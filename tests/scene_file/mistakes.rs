@@ -102,20 +102,25 @@ const MISTAKES: &[(&str, usize, &[&str])] = &[
         &["did you mean \"whitted\"?"],
     ),
     (
-        "[integrator]\nkind = \"path\"\n",
+        "[integrator]\nkind = \"pat\"\n",
         2,
-        &["the integrator \"path\" is not supported"],
+        &["did you mean \"path\"?"],
+    ),
+    (
+        "[integrator]\nclamp = 0\n",
+        2,
+        &["clamp must be a number above 0"],
     ),
     ("[integrator]\nmax_depth = 0\n", 2, &["max_depth must be"]),
     (
-        "[background]\nenvironment = \"sky.exr\"\n",
+        "[background]\nenvironment = 3\n",
         2,
-        &["environment", "not supported"],
+        &["environment must be text"],
     ),
     (
         "[background]\nrotate = 90\n",
         2,
-        &["rotate", "not supported"],
+        &["\"rotate\" needs \"environment\""],
     ),
     (
         "[background]\nradiance = [-1, 0, 0]\n",

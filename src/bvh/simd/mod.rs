@@ -47,6 +47,10 @@ pub(super) trait Lanes<const W: usize>: Copy {
     fn max_abs(self, other: Self) -> Self;
     /// Each negated where the sign bit of `other` is set.
     fn with_sign_flipped_by(self, other: Self) -> Self;
+    /// The least of all.
+    fn least(self) -> f32;
+    /// The greatest of all.
+    fn greatest(self) -> f32;
     /// Bit `i` says whether `self[i] <= other[i]`; false of NaN.
     fn le(self, other: Self) -> u32;
     /// Bit `i` says whether `self[i] < other[i]`; false of NaN.

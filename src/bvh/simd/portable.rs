@@ -84,6 +84,14 @@ impl<const W: usize> Lanes<W> for Portable<W> {
         })
     }
     #[inline(always)]
+    fn least(self) -> f32 {
+        self.0.into_iter().fold(f32::INFINITY, f32::min)
+    }
+    #[inline(always)]
+    fn greatest(self) -> f32 {
+        self.0.into_iter().fold(f32::NEG_INFINITY, f32::max)
+    }
+    #[inline(always)]
     fn le(self, other: Self) -> u32 {
         self.mask(other, |x, y| x <= y)
     }

@@ -49,7 +49,7 @@ struct Avx512(__m512);
 macro_rules! lanes {
     ($type:ident, $width:literal, $set1:ident, $load:ident, $store:ident, $sub:ident, $add:ident,
      $mul:ident, $fmadd:ident, $fmsub:ident, $fnmadd:ident, $min:ident, $max:ident,
-     $max_abs:ident, $flip:ident, $compare:ident) => {
+     $max_abs:ident, $flip:ident, $least:ident, $greatest:ident, $compare:ident) => {
         // SAFETY (of all blocks in here): a value of this type exists only where `run_avx2` or
         // `run_avx512` called the job, hence on a processor that has the instructions; loads
         // and stores are unaligned ones of exactly the array behind the reference.
@@ -107,6 +107,14 @@ macro_rules! lanes {
                 Self(unsafe { $flip(self.0, other.0) })
             }
             #[inline(always)]
+            fn least(self) -> f32 {
+                unsafe { $least(self.0) }
+            }
+            #[inline(always)]
+            fn greatest(self) -> f32 {
+                unsafe { $greatest(self.0) }
+            }
+            #[inline(always)]
             fn le(self, other: Self) -> u32 {
                 unsafe { $compare::<_CMP_LE_OQ>(self.0, other.0) }
             }
@@ -134,6 +142,8 @@ lanes!(
     _mm256_max_ps,
     max_abs_8,
     flip_8,
+    least_8,
+    greatest_8,
     compare_8
 );
 
@@ -153,6 +163,8 @@ lanes!(
     _mm512_max_ps,
     max_abs_16,
     flip_16,
+    _mm512_reduce_min_ps,
+    _mm512_reduce_max_ps,
     compare_16
 );
 
@@ -167,6 +179,22 @@ fn max_abs_8(a: __m256, b: __m256) -> __m256 {
 #[target_feature(enable = "avx2")]
 fn flip_8(a: __m256, by: __m256) -> __m256 {
     _mm256_xor_ps(a, _mm256_and_ps(_mm256_set1_ps(-0.0), by))
+}
+
+#[inline]
+#[target_feature(enable = "avx2")]
+fn least_8(a: __m256) -> f32 {
+    let four = _mm_min_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps::<1>(a));
+    let two = _mm_min_ps(four, _mm_movehl_ps(four, four));
+    _mm_cvtss_f32(_mm_min_ss(two, _mm_movehdup_ps(two)))
+}
+
+#[inline]
+#[target_feature(enable = "avx2")]
+fn greatest_8(a: __m256) -> f32 {
+    let four = _mm_max_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps::<1>(a));
+    let two = _mm_max_ps(four, _mm_movehl_ps(four, four));
+    _mm_cvtss_f32(_mm_max_ss(two, _mm_movehdup_ps(two)))
 }
 
 #[inline]

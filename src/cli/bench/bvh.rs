@@ -60,6 +60,9 @@ pub struct BvhOptions {
     /// Times that everything is measured [default: 5, or 3 with --scaling]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
     repeats: Option<u16>,
+    /// Trace neighbouring rays together, as a render does, and not one by one
+    #[arg(long)]
+    together: bool,
     /// Pixels along each side of the camera that its own rays come from [default: 1024, or 512 with --scaling]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=8192))]
     resolution: Option<u32>,
@@ -223,6 +226,7 @@ fn rays_of(
 fn plan(options: &BvhOptions, repeats: u16) -> Plan {
     let all_trees = Builder::ALL.into_iter().filter(|b| *b != Builder::None);
     Plan {
+        together: options.together,
         builders: match options.builder.as_slice() {
             [] => all_trees.collect(),
             given => given.to_vec(),

@@ -179,3 +179,138 @@ impl Default for Volume {
         }
     }
 }
+
+/// `KHR_materials_clearcoat`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct ClearcoatEntry {
+    pub clearcoat_factor: f32,
+    pub clearcoat_texture: Option<TextureInfo>,
+    pub clearcoat_roughness_factor: f32,
+    pub clearcoat_roughness_texture: Option<TextureInfo>,
+    pub clearcoat_normal_texture: Option<TextureInfo>,
+}
+
+/// `KHR_materials_sheen`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct SheenEntry {
+    pub sheen_color_factor: [f32; 3],
+    pub sheen_color_texture: Option<TextureInfo>,
+    pub sheen_roughness_factor: f32,
+    pub sheen_roughness_texture: Option<TextureInfo>,
+}
+
+/// `KHR_materials_anisotropy`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct AnisotropyEntry {
+    pub anisotropy_strength: f32,
+    pub anisotropy_rotation: f32,
+    pub anisotropy_texture: Option<TextureInfo>,
+}
+
+/// `KHR_materials_iridescence`.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct IridescenceEntry {
+    pub iridescence_factor: f32,
+    pub iridescence_texture: Option<TextureInfo>,
+    pub iridescence_ior: f32,
+    pub iridescence_thickness_minimum: f32,
+    pub iridescence_thickness_maximum: f32,
+    pub iridescence_thickness_texture: Option<TextureInfo>,
+}
+
+impl Default for IridescenceEntry {
+    fn default() -> Self {
+        Self {
+            iridescence_factor: 0.0,
+            iridescence_texture: None,
+            iridescence_ior: 1.3,
+            iridescence_thickness_minimum: 100.0,
+            iridescence_thickness_maximum: 400.0,
+            iridescence_thickness_texture: None,
+        }
+    }
+}
+
+/// `KHR_materials_diffuse_transmission`.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct DiffuseTransmissionEntry {
+    pub diffuse_transmission_factor: f32,
+    pub diffuse_transmission_texture: Option<TextureInfo>,
+    pub diffuse_transmission_color_factor: [f32; 3],
+    pub diffuse_transmission_color_texture: Option<TextureInfo>,
+}
+
+impl Default for DiffuseTransmissionEntry {
+    fn default() -> Self {
+        Self {
+            diffuse_transmission_factor: 0.0,
+            diffuse_transmission_texture: None,
+            diffuse_transmission_color_factor: [1.0; 3],
+            diffuse_transmission_color_texture: None,
+        }
+    }
+}
+
+/// `KHR_materials_dispersion`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub struct Dispersion {
+    pub dispersion: f32,
+}
+
+/// `KHR_materials_pbrSpecularGlossiness`.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct SpecularGlossiness {
+    pub diffuse_factor: [f32; 4],
+    pub diffuse_texture: Option<TextureInfo>,
+    pub specular_factor: [f32; 3],
+    pub glossiness_factor: f32,
+    pub specular_glossiness_texture: Option<TextureInfo>,
+}
+
+impl Default for SpecularGlossiness {
+    fn default() -> Self {
+        Self {
+            diffuse_factor: [1.0; 4],
+            diffuse_texture: None,
+            specular_factor: [1.0; 3],
+            glossiness_factor: 1.0,
+            specular_glossiness_texture: None,
+        }
+    }
+}
+
+/// `KHR_materials_variants` of the document.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub struct Variants {
+    pub variants: Vec<VariantName>,
+}
+
+/// One of them.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub struct VariantName {
+    pub name: String,
+}
+
+/// `KHR_materials_variants` of a primitive.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub struct VariantMappings {
+    pub mappings: Vec<VariantMapping>,
+}
+
+/// The material of some variants.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+pub struct VariantMapping {
+    pub material: Option<usize>,
+    pub variants: Vec<usize>,
+}

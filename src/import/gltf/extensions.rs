@@ -1,14 +1,10 @@
 //! What becomes of extensions: known, harmless, left out with a word, or refused.
-//!
-//! Of some that are known, values are kept that nothing shows yet: [`check_materials`] says where.
 
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use super::document::{Document, place};
-use crate::color::Rgb;
-use crate::import::{ImportError, ImportOptions, Problem, WarningCode, Warnings};
-use crate::material::{Material, MetallicRoughness, Surface};
+use super::document::Document;
+use crate::import::{ImportError, ImportOptions, WarningCode, Warnings};
 
 /// Compressed meshes that we cannot read.
 pub const DRACO: &str = "KHR_draco_mesh_compression";
@@ -29,15 +25,28 @@ pub const TRANSMISSION: &str = "KHR_materials_transmission";
 /// What is inside of them.
 pub const VOLUME: &str = "KHR_materials_volume";
 
-/// What we do all of, but for what [`check_materials`] tells.
+/// The model that came before metallic-roughness.
+pub const SPECULAR_GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
+/// Other materials for the same meshes.
+pub const VARIANTS: &str = "KHR_materials_variants";
+
+/// What we do all of.
 const KNOWN: &[&str] = &[
     LIGHTS,
     INSTANCING,
     WEBP,
     TEXTURE_TRANSFORM,
+    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",
+    "KHR_materials_diffuse_transmission",
+    "KHR_materials_dispersion",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
+    "KHR_materials_iridescence",
+    "KHR_materials_sheen",
     "KHR_materials_specular",
+    SPECULAR_GLOSSINESS,
+    VARIANTS,
     TRANSMISSION,
     "KHR_materials_unlit",
     VOLUME,
@@ -58,17 +67,7 @@ const HARMLESS: &[&str] = &[
 /// What will look different without an extension.
 fn effect(name: &str) -> &'static str {
     match name {
-        "KHR_materials_clearcoat" => "coats are left out",
-        "KHR_materials_sheen" => "cloth lacks its sheen",
-        "KHR_materials_iridescence" => "thin films lack their colours",
-        "KHR_materials_anisotropy" => "brushed surfaces have round highlights",
-        "KHR_materials_dispersion" => "glass does not split light into colours",
-        "KHR_materials_diffuse_transmission" => "thin matte surfaces do not let light through",
         "KHR_materials_volume_scatter" => "volumes do not scatter light",
-        "KHR_materials_pbrSpecularGlossiness" => {
-            "materials are shown as their metallic-roughness values say, or else white"
-        }
-        "KHR_materials_variants" => "the default variant is shown",
         "KHR_node_visibility" => "hidden nodes are shown",
         "KHR_gaussian_splatting" => "splats are left out",
         "MSFT_lod" => "the finest level of detail is shown",
@@ -110,53 +109,6 @@ pub fn check(
         }
     }
     Ok(())
-}
-
-/// Tells which materials have values of known extensions that are kept and not shown; `materials`
-/// are those of the document, in its order.
-///
-/// # Errors
-/// In strict mode, where the file requires such an extension.
-pub fn check_materials(
-    document: &Document,
-    materials: &[Material],
-    path: &Path,
-    options: ImportOptions,
-    warnings: &mut Warnings,
-) -> Result<(), ImportError> {
-    for (index, material) in materials.iter().enumerate() {
-        let Surface::MetallicRoughness(surface) = &material.surface else {
-            continue;
-        };
-        for (extension, what) in unshown(surface) {
-            let place = place("material", index, Some(&material.name));
-            let is_required = document.extensions_required.iter().any(|e| e == extension);
-            if is_required && options.is_strict {
-                return Err(ImportError {
-                    path: path.to_owned(),
-                    place: Some(place),
-                    problem: Problem::Unsupported(format!("{what} ({extension})")),
-                });
-            }
-            let message = format!("{place}: {what} ({extension}) is not supported: it looks clear");
-            warnings.add(WarningCode::Approximated, message);
-        }
-    }
-    Ok(())
-}
-
-/// Extensions of which `surface` has more than is shown, and what that is.
-fn unshown(surface: &MetallicRoughness) -> impl Iterator<Item = (&'static str, &'static str)> {
-    let is_metal = surface.metallic.factor == 1.0 && surface.metallic.texture.is_none();
-    let lets_light_through = surface.transmission.factor > 0.0 && !is_metal;
-    let is_rough = lets_light_through && surface.roughness.factor > 0.0;
-    let is_colored = lets_light_through
-        && surface.thickness.factor > 0.0
-        && surface.attenuation_distance.is_finite()
-        && surface.attenuation_color != Rgb::WHITE;
-    let rough = is_rough.then_some((TRANSMISSION, "light through a rough surface"));
-    let colored = is_colored.then_some((VOLUME, "the colour of a volume"));
-    rough.into_iter().chain(colored)
 }
 
 /// Whether only the things that use an extension can tell if anything is missing without it.

@@ -3,9 +3,9 @@
 use super::document::{Extensions, place};
 use super::document_material::{
     AlphaModeEntry, EmissiveStrength, Ior, MaterialEntry, PbrMetallicRoughness, Specular,
-    TextureInfo, TextureTransform, Transmission, Volume,
+    SpecularGlossiness, TextureInfo, TextureTransform, Transmission, Volume,
 };
-use super::extensions::{TEXTURE_TRANSFORM, TRANSMISSION, VOLUME};
+use super::extensions::{SPECULAR_GLOSSINESS, TEXTURE_TRANSFORM, TRANSMISSION, VOLUME};
 use super::geometry::MAX_UV_SETS;
 use super::texture::Textures;
 use crate::color::Rgb;
@@ -15,10 +15,10 @@ use crate::math::{Affine2, Vec2};
 use crate::texture::{TextureRef, TexturedRgb, TexturedScalar};
 
 /// Channels of textures.
-const RED: u8 = 0;
-const GREEN: u8 = 1;
-const BLUE: u8 = 2;
-const ALPHA: u8 = 3;
+pub const RED: u8 = 0;
+pub const GREEN: u8 = 1;
+pub const BLUE: u8 = 2;
+pub const ALPHA: u8 = 3;
 
 /// What a primitive without a material is made of (glTF 2.0, section 3.7.2.1).
 pub fn default_material() -> Material {
@@ -52,8 +52,9 @@ pub fn material(
     reader.material()
 }
 
-struct MaterialReader<'a> {
-    entry: &'a MaterialEntry,
+/// Reads one material.
+pub struct MaterialReader<'a> {
+    pub(super) entry: &'a MaterialEntry,
     base: &'a PbrMetallicRoughness,
     textures: &'a Textures,
     place: String,
@@ -64,6 +65,10 @@ impl MaterialReader<'_> {
     fn material(&mut self) -> Material {
         let entry = self.entry;
         let name = entry.name.as_deref().unwrap_or_default().to_owned();
+        let old: Option<SpecularGlossiness> = self.optional(&entry.extensions, SPECULAR_GLOSSINESS);
+        if let Some(old) = old {
+            return self.specular_glossiness(&old, name);
+        }
         let base_color = self.base_color();
         let alpha_mode = self.alpha_mode();
         let opacity = self.opacity(base_color.texture);
@@ -135,12 +140,59 @@ impl MaterialReader<'_> {
     }
 
     fn normal_map(&mut self) -> Option<NormalMap> {
-        let info = self.entry.normal_texture.as_deref()?;
+        self.bumps("normalTexture", self.entry.normal_texture.as_deref())
+    }
+
+    pub(super) fn bumps(&mut self, what: &str, info: Option<&TextureInfo>) -> Option<NormalMap> {
+        let info = info?;
+        let scale = format!("the scale of {what}");
         Some(NormalMap {
             texture: self.texture(Some(info))?,
-            scale: self.number("the scale of normalTexture", info.scale, f32::MIN, f32::MAX),
+            scale: self.number(&scale, info.scale, f32::MIN, f32::MAX),
             is_height: false,
         })
+    }
+
+    /// The model that came before metallic-roughness: a matte colour under a dielectric whose
+    /// reflectance at normal incidence is given as it is, which is what an index of 0 stands for.
+    fn specular_glossiness(&mut self, old: &SpecularGlossiness, name: String) -> Material {
+        let entry = self.entry;
+        let [r, g, b, alpha] = old.diffuse_factor;
+        let diffuse = TexturedRgb {
+            factor: self.color("diffuseFactor", [r, g, b], 1.0),
+            texture: self.texture(old.diffuse_texture.as_ref()),
+        };
+        let texture = self.texture(old.specular_glossiness_texture.as_ref());
+        let surface = MetallicRoughness {
+            base_color: diffuse,
+            metallic: TexturedScalar::constant(0.0),
+            roughness: TexturedScalar {
+                factor: self.number("glossinessFactor", old.glossiness_factor, 0.0, 1.0),
+                texture,
+                channel: ALPHA,
+            },
+            is_glossiness: true,
+            index_of_refraction: 0.0,
+            specular_color: TexturedRgb {
+                factor: self.color("specularFactor", old.specular_factor, 1.0),
+                texture,
+            },
+            occlusion: self.occlusion(),
+            ..MetallicRoughness::default()
+        };
+        Material {
+            name,
+            surface: Surface::MetallicRoughness(Box::new(surface)),
+            emission: self.emission(),
+            alpha_mode: self.alpha_mode(),
+            opacity: TexturedScalar {
+                factor: self.number("the alpha of diffuseFactor", alpha, 0.0, 1.0),
+                texture: diffuse.texture,
+                channel: ALPHA,
+            },
+            normal_map: self.normal_map(),
+            is_double_sided: entry.double_sided,
+        }
     }
 
     fn surface(&mut self, base_color: TexturedRgb) -> MetallicRoughness {
@@ -198,6 +250,13 @@ impl MaterialReader<'_> {
             ),
             attenuation_color: self.color("attenuationColor", volume.attenuation_color, 1.0),
             attenuation_distance: self.attenuation_distance(volume.attenuation_distance),
+            dispersion: self.dispersion(),
+            is_glossiness: false,
+            clearcoat: self.clearcoat(),
+            sheen: self.sheen(),
+            anisotropy: self.anisotropy(),
+            iridescence: self.iridescence(),
+            diffuse_transmission: self.diffuse_transmission(),
         }
     }
 
@@ -229,7 +288,7 @@ impl MaterialReader<'_> {
     }
 
     /// One use of a texture; `None` where there is none, or it could not be read.
-    fn texture(&mut self, info: Option<&TextureInfo>) -> Option<TextureRef> {
+    pub(super) fn texture(&mut self, info: Option<&TextureInfo>) -> Option<TextureRef> {
         let info = info?;
         let Some(id) = self.textures.ids.get(info.index) else {
             self.warn("one of its textures is not there");
@@ -258,12 +317,12 @@ impl MaterialReader<'_> {
     }
 
     /// An extension of the material; its defaults where it is not there, or not well-formed.
-    fn extension<T: serde::de::DeserializeOwned + Default>(&mut self, name: &str) -> T {
+    pub(super) fn extension<T: serde::de::DeserializeOwned + Default>(&mut self, name: &str) -> T {
         self.optional(&self.entry.extensions, name)
             .unwrap_or_default()
     }
 
-    fn optional<T: serde::de::DeserializeOwned>(
+    pub(super) fn optional<T: serde::de::DeserializeOwned>(
         &mut self,
         extensions: &Extensions,
         name: &str,
@@ -274,12 +333,12 @@ impl MaterialReader<'_> {
         })
     }
 
-    fn color(&mut self, what: &str, channels: [f32; 3], max: f32) -> Rgb {
+    pub(super) fn color(&mut self, what: &str, channels: [f32; 3], max: f32) -> Rgb {
         Rgb::from(channels.map(|channel| self.number(what, channel, 0.0, max)))
     }
 
     /// `value`, or the nearest legal one with a warning.
-    fn number(&mut self, what: &str, value: f32, min: f32, max: f32) -> f32 {
+    pub(super) fn number(&mut self, what: &str, value: f32, min: f32, max: f32) -> f32 {
         if (min..=max).contains(&value) {
             return value;
         }

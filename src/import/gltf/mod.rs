@@ -22,6 +22,7 @@ mod graph;
 mod instancing;
 mod light;
 mod material;
+mod material_layers;
 mod meshes;
 mod morph;
 mod skin;
@@ -84,7 +85,6 @@ fn read(
         .map_err(|(place, what)| ImportError::invalid_at(path, place, what))?;
     let textures = Textures::read(path, &document, &buffers, warnings);
     let materials = materials(&accessors, &textures, warnings).map_err(in_file(path))?;
-    extensions::check_materials(&document, &materials, path, options, warnings)?;
     model.undecoded = textures.undecoded;
     model.scene = Scene {
         materials,

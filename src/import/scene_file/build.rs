@@ -12,9 +12,10 @@ use super::section::Section;
 use super::settings::BackgroundSection;
 use super::{light, material, settings};
 use crate::color::Rgb;
+use crate::import::environment::EnvironmentFile;
 use crate::import::undecoded::{self, Undecoded};
 use crate::import::{ImportError, ImportOptions, Imported, Warnings, census};
-use crate::scene::{Background, LeftOut, Needs, Omission, Scene, Settings};
+use crate::scene::{Background, IntegratorKind, Keep, LeftOut, Needs, Omission, Scene, Settings};
 
 const SECTIONS: &[&str] = &[
     "camera",
@@ -40,12 +41,21 @@ pub fn build(
     let mut warnings = Warnings::default();
     let (mut scene, mut undecoded, mut left_out) = scene(&root, options, &mut warnings)?;
     let view = place_camera(&mut scene, camera, &settings, &source.path, options)?;
-    let lights = light_up(&mut scene, &root);
-    scene.background = surround(background, &lights);
-    let was_changed = background.ambient.is_none() && !lights.is_empty();
+    let is_path = settings.integrator == IntegratorKind::Path;
+    // Only `path` brings the light of the surroundings to surfaces.
+    let is_lit = is_path && background.environment.is_some();
+    let lights = light_up(&mut scene, &root, is_lit);
+    let (surroundings, was_changed) = surround(&background, &lights, is_path);
+    scene.background = surroundings;
     let changed = was_changed.then_some(&scene.background);
     let defaults = defaults::report(view.as_ref(), changed, &lights);
     let needs = options.layers.and(Needs::of(settings.integrator));
+    left_out.extend(add_environment(
+        &mut scene,
+        &background,
+        needs,
+        options.keep,
+    )?);
     left_out.extend(census::leave_out(
         &mut scene,
         &mut undecoded,
@@ -158,9 +168,10 @@ fn choose(scene: &mut Scene, name: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Gives default lights to a scene that has none, unless it says so itself (`light = []`).
-fn light_up(scene: &mut Scene, root: &Section) -> Vec<RigLight> {
-    let is_dark = scene.lights.is_empty() && root.value("light").is_none();
+/// Gives default lights to a scene that has none, unless it says so itself (`light = []`) or its
+/// surroundings light it.
+fn light_up(scene: &mut Scene, root: &Section, is_lit: bool) -> Vec<RigLight> {
+    let is_dark = !is_lit && scene.lights.is_empty() && root.value("light").is_none();
     let Some(camera) = scene.cameras.first().filter(|_| is_dark) else {
         return Vec::new();
     };
@@ -169,15 +180,53 @@ fn light_up(scene: &mut Scene, root: &Section) -> Vec<RigLight> {
     Vec::from(rig)
 }
 
-/// The background: where the file does not say how much ambient light there is, default lights bring some.
-fn surround(section: BackgroundSection, lights: &[RigLight]) -> Background {
-    let default = if lights.is_empty() {
-        Rgb::BLACK
-    } else {
-        defaults::AMBIENT
+/// The background, and whether default lights brought something into it: ambient light where it is
+/// read, else radiance from everywhere, unless the file says how much of that there is.
+fn surround(section: &BackgroundSection, lights: &[RigLight], is_path: bool) -> (Background, bool) {
+    let mut background = Background {
+        // An environment is multiplied with it instead.
+        radiance: match section.environment {
+            None => section.radiance.unwrap_or_default(),
+            Some(_) => Rgb::BLACK,
+        },
+        ambient: section.ambient.unwrap_or_default(),
     };
-    Background {
-        radiance: section.radiance,
-        ambient: section.ambient.unwrap_or(default),
+    if lights.is_empty() {
+        return (background, false);
     }
+    let (brought, is_free) = if is_path {
+        (&mut background.radiance, section.radiance.is_none())
+    } else {
+        (&mut background.ambient, section.ambient.is_none())
+    };
+    if is_free {
+        *brought = defaults::AMBIENT;
+    }
+    (background, is_free)
+}
+
+/// Reads the picture of the surroundings, unless nothing needs it.
+fn add_environment(
+    scene: &mut Scene,
+    section: &BackgroundSection,
+    needs: Needs,
+    keep: Keep,
+) -> Result<Option<LeftOut>, ImportError> {
+    let Some(path) = &section.environment else {
+        return Ok(None);
+    };
+    let file = EnvironmentFile::read(path)?;
+    if !needs.scattering && !keep.contains(Omission::Images) {
+        let what = format!("the environment {}", path.display());
+        let why = "what is rendered does not read it";
+        return Ok(Some(LeftOut::new(
+            Omission::Images,
+            what,
+            why,
+            file.decoded_bytes(),
+        )));
+    }
+    let factor = section.radiance.unwrap_or(Rgb::WHITE);
+    scene.environment = file.decode(factor, section.rotate_radians)?;
+    Ok(None)
 }

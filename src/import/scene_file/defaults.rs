@@ -37,7 +37,8 @@ pub struct RigLight {
     pub angle: f64,
 }
 
-/// What stands in for the light of the surroundings beside the default lights: without it rough
+/// What stands in for the light of the surroundings beside the default lights, as ambient light or as
+/// radiance from everywhere: without it rough
 /// metal, which has nothing to mirror, is black but for its highlights.
 pub const AMBIENT: Rgb = Rgb::splat(0.15);
 

@@ -124,15 +124,6 @@ impl Source {
 
     /// An error: `what` is wrong at `place`.
     pub fn invalid(&self, place: &Place, what: impl Into<String>) -> ImportError {
-        self.error(place, Problem::Invalid(what.into()))
-    }
-
-    /// An error: `what`, asked for at `place`, is right and not supported.
-    pub fn unsupported(&self, place: &Place, what: impl Into<String>) -> ImportError {
-        self.error(place, Problem::Unsupported(what.into()))
-    }
-
-    fn error(&self, place: &Place, problem: Problem) -> ImportError {
         ImportError {
             path: self.path.clone(),
             place: match place {
@@ -143,7 +134,7 @@ impl Source {
                 Place::Override(path) => Some(format!("--set {path}")),
                 Place::Implied => None,
             },
-            problem,
+            problem: Problem::Invalid(what.into()),
         }
     }
 

@@ -44,15 +44,19 @@
 //!
 //! | key | range | default | |
 //! |---|---|---|---|
-//! | `kind` | `"whitted"`, `"normal"`, `"depth"`, `"albedo"` | `"whitted"` | how light is followed, or what else is shown |
+//! | `kind` | `"whitted"`, `"path"`, `"normal"`, `"depth"`, `"albedo"` | `"whitted"`; `"path"` for a glTF file by itself | how light is followed, or what else is shown |
 //! | `max_depth` | 1 to 1,024 | 8 | scattering events of a path; 1 is direct light only |
+//! | `clamp` | > 0 | none | most radiance that light brings which was scattered more than once; what that takes away is said (`path`) |
 //!
 //! # `[background]`
 //!
 //! | key | range | default | |
 //! |---|---|---|---|
-//! | `radiance` | colour ≥ 0 | black | what rays that leave the scene bring back, W/(m² sr) |
-//! | `ambient` | colour ≥ 0 | black; with default lights 0.15 | irradiance / π added to every matte surface (`whitted`) |
+//! | `radiance` | colour ≥ 0 | black; with default lights 0.15 in `path`; with an environment white | what rays that leave the scene bring back, W/(m² sr); an environment is multiplied with it |
+//! | `ambient` | colour ≥ 0 | black; with default lights 0.15 in `whitted` | irradiance / π added to every matte surface (`whitted`) |
+//!
+//! | `environment` | path | | a picture of the surroundings in latitude and longitude (EXR, HDR, or as textures): its middle is at −z, its top is up; in `path` it lights the scene |
+//! | `rotate` | degrees | 0 | turns it about y, counter-clockwise seen from above |
 //!
 //! # `[[model]]`
 //!
@@ -103,7 +107,7 @@
 //!
 //! `kind` is needed, and so are the keys without a default. Where a scene file has any light, the
 //! lights of its models are left out. Where neither it nor its models have one, it gets a key, a
-//! fill and a rim light (surfaces that emit are not counted); `light = []` keeps it dark.
+//! fill and a rim light (surfaces that emit are not counted, an environment is in `path`); `light = []` keeps it dark.
 //!
 //! | kind | key | range | default | |
 //! |---|---|---|---|---|
@@ -147,7 +151,7 @@ use std::path::Path;
 use super::{ImportError, Imported};
 use crate::camera::Camera;
 use crate::math::DVec3;
-use crate::scene::{Keep, Needs, Placed};
+use crate::scene::{IntegratorKind, Keep, Needs, Placed};
 pub use defaults::Defaults;
 use document::{Entry, Kind, Node, Source};
 pub use nearest::suggestion;
@@ -194,7 +198,14 @@ pub(super) fn import_bare(path: &Path, options: &SceneOptions) -> Result<Importe
     };
     let file = entry("file", Kind::String(name.to_owned()));
     let model = Node::implied(Kind::Table(vec![file]));
-    let root = Kind::Table(vec![entry("model", Kind::Array(vec![model]))]);
+    let mut sections = vec![entry("model", Kind::Array(vec![model]))];
+    // glTF's materials are made for all light; OBJ's for what lights send straight to them.
+    if super::extension(path) != "obj" {
+        let kind = IntegratorKind::Path.name().to_owned();
+        let kind = entry("kind", Kind::String(kind));
+        sections.push(entry("integrator", Kind::Table(vec![kind])));
+    }
+    let root = Kind::Table(sections);
     import_tree(&Source::without_text(path), Node::implied(root), options)
 }
 

@@ -37,7 +37,9 @@ pub fn background(background: &Background) -> String {
     if background.radiance != Rgb::BLACK {
         let _ = writeln!(text, "radiance = {}", color(background.radiance));
     }
-    let _ = writeln!(text, "ambient = {}", color(background.ambient));
+    if background.ambient != Rgb::BLACK {
+        let _ = writeln!(text, "ambient = {}", color(background.ambient));
+    }
     text
 }
 

@@ -1,7 +1,9 @@
 //! `[film]`, `[sampling]`, `[integrator]` and `[background]`.
 
+use std::path::{Path, PathBuf};
+
 use super::section::Section;
-use super::value::{NON_NEGATIVE, Value};
+use super::value::{ANY, NON_NEGATIVE, POSITIVE, Value};
 use crate::color::Rgb;
 use crate::import::ImportError;
 use crate::math::UVec2;
@@ -22,7 +24,7 @@ pub fn read(root: &Section) -> Result<Settings, ImportError> {
         settings.sampling = sampling(value)?;
     }
     if let Some(value) = root.value("integrator") {
-        let keys = &["kind", "max_depth"];
+        let keys = &["kind", "max_depth", "clamp"];
         let section = Section::new(root.source, value.node, "[integrator]", keys)?;
         settings.integrator = section
             .get("kind", integrator)?
@@ -30,17 +32,22 @@ pub fn read(root: &Section) -> Result<Settings, ImportError> {
         settings.max_depth = section
             .get("max_depth", |v| v.integer_u32(1, MAX_DEPTH))?
             .unwrap_or(settings.max_depth);
+        settings.clamp = section.get("clamp", |v| v.single(POSITIVE))?;
     }
     Ok(settings)
 }
 
 /// What `[background]` says.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct BackgroundSection {
-    /// Black where it is left out.
-    pub radiance: Rgb,
+    /// `None` where it is left out: what that means depends on the lights.
+    pub radiance: Option<Rgb>,
     /// `None` where it is left out: what that means depends on the lights.
     pub ambient: Option<Rgb>,
+    /// A picture of the surroundings.
+    pub environment: Option<PathBuf>,
+    /// How far the picture is turned about y.
+    pub rotate_radians: f64,
 }
 
 /// Reads `[background]` of `root`.
@@ -50,16 +57,20 @@ pub fn background(root: &Section) -> Result<BackgroundSection, ImportError> {
     };
     let keys = &["radiance", "ambient", "environment", "rotate"];
     let section = Section::new(root.source, value.node, "[background]", keys)?;
-    for key in ["environment", "rotate"] {
-        if let Some(value) = section.value(key) {
-            let what = format!("\"{key}\" (an environment map)");
-            return Err(root.source.unsupported(&value.node.place, what));
-        }
-    }
     let color = |key| section.get(key, |v| v.color(NON_NEGATIVE));
+    let environment = section.get("environment", |v| v.string())?;
+    if let (None, Some(rotate)) = (environment, section.value("rotate")) {
+        return Err(rotate.invalid("\"rotate\" needs \"environment\" beside it"));
+    }
+    let folder = root.source.path.parent().unwrap_or(Path::new(""));
     Ok(BackgroundSection {
-        radiance: color("radiance")?.unwrap_or_default(),
+        radiance: color("radiance")?,
         ambient: color("ambient")?,
+        environment: environment.map(|file| folder.join(file)),
+        rotate_radians: section
+            .get("rotate", |v| v.number(ANY))?
+            .unwrap_or(0.0)
+            .to_radians(),
     })
 }
 
@@ -95,9 +106,5 @@ fn sampling(value: Value) -> Result<SamplingConfig, ImportError> {
 }
 
 fn integrator(value: Value) -> Result<IntegratorKind, ImportError> {
-    if value.string()? == "path" {
-        let what = "the integrator \"path\"";
-        return Err(value.source.unsupported(&value.node.place, what));
-    }
     value.one_of(IntegratorKind::ALL, IntegratorKind::name)
 }

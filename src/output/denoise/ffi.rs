@@ -4,6 +4,7 @@
 
 #![allow(unsafe_code)]
 
+use std::error::Error;
 use std::ffi::{CStr, OsStr, c_char, c_int, c_void};
 use std::ptr;
 
@@ -55,7 +56,10 @@ impl Library {
     pub fn open(name: &OsStr) -> Result<Self, String> {
         // SAFETY: loading runs the library's initialisers. A file of the name that the user gave, or that the
         // system knows as Open Image Denoise, is trusted as the program itself is.
-        let loaded = unsafe { Loaded::new(name) }.map_err(|error| error.to_string())?;
+        let loaded = unsafe { Loaded::new(name) }.map_err(|error| {
+            let cause = error.source().map(ToString::to_string);
+            cause.unwrap_or_else(|| error.to_string())
+        })?;
         Ok(Self { loaded })
     }
 

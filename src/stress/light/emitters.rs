@@ -6,10 +6,13 @@ use rayon::prelude::*;
 
 use crate::color::Rgb;
 use crate::light::{DiskLight, Light, RectangleLight, SphereLight};
-use crate::math::{DVec3, UVec2, UnitVec3, Vec3};
+use crate::math::{DVec3, Ray, UVec2, UnitVec3, Vec3};
 use crate::sampling::{Pattern, Sampler, SamplingConfig};
+use crate::scene::{Scene, Settings};
 use crate::stress::check::deviation;
 use crate::stress::closed_form::{disk_irradiance, polygon_irradiance, sphere_irradiance};
+use crate::stress::floor::{RHO, matte, paths};
+use crate::stress::scenes::{add_light, add_quad, means};
 use crate::stress::{Check, Effort};
 
 /// L2.
@@ -39,11 +42,11 @@ pub fn disks(effort: Effort) -> Vec<Check> {
         };
         (Light::Disk(light), disk_irradiance(r, h, a))
     });
-    vec![check(
-        "disks of radius 1e-6..1e15, on and off the axis",
-        &lights,
-        effort,
-    )]
+    let what = "disks of radius 1e-6..1e15, on and off the axis";
+    vec![
+        check(what, &lights, effort),
+        by_paths(what, &lights, effort),
+    ]
 }
 
 /// L3, and from inside.
@@ -75,9 +78,11 @@ pub fn spheres(effort: Effort) -> Vec<Check> {
     });
     let centers = [Vec3::ZERO, Vec3::new(-0.3, -0.9, -0.1), Vec3::X];
     let inside = centers.map(|center| (sphere(center, 1.0), PI));
+    let what = "spheres of radius 1e-9..1e12";
     vec![
-        check("spheres of radius 1e-9..1e12", &outside, effort),
+        check(what, &outside, effort),
         check("from inside of a sphere", &inside, effort),
+        by_paths(what, &outside, effort),
     ]
 }
 
@@ -126,11 +131,58 @@ pub fn rectangles(effort: Effort) -> Vec<Check> {
             polygon_irradiance(&corners, DVec3::Y),
         )
     });
-    vec![check(
-        "rectangles and parallelograms of size 1e-15..1e15",
-        &lights,
-        effort,
-    )]
+    let what = "rectangles and parallelograms of size 1e-15..1e15";
+    vec![
+        check(what, &lights, effort),
+        by_paths(what, &lights, effort),
+    ]
+}
+
+/// The same by `path`, which finds lights by looking at them and by scattering: the radiance of a matte floor
+/// that receives them, and whose size is that of the light's distance.
+fn by_paths(what: &str, lights: &[(Light, f64)], effort: Effort) -> Check {
+    let settings = Settings {
+        max_depth: 1,
+        ..paths(Pattern::Random)
+    };
+    let worst = lights.iter().map(|(light, exact)| {
+        let size = light.bounds().map_or(1.0, |bounds| {
+            let reach = bounds.min.abs().max(bounds.max.abs());
+            reach.max_element()
+        });
+        let mut scene = Scene::default();
+        let (x, z) = (Vec3::X * size, Vec3::Z * size);
+        add_quad(&mut scene, Vec3::ZERO, z, x, matte());
+        add_light(&mut scene, *light);
+        // So low that no light is between the eye and the floor.
+        let eye = Vec3::new(0.3, 0.1, 0.2) * (1e-3 * lowest(light));
+        let received = means(&scene, eye, -eye, &settings, effort.pick(50, 500));
+        let expected = exact * f64::from(RHO) / PI;
+        let relative: Vec<f64> = received.iter().map(|value| value / expected).collect();
+        deviation(&relative, 1.0)
+    });
+    let worst = worst.fold(0.0, |a: f64, b| if b <= a { a } else { b });
+    Check::at_most(
+        format!("path, {what}: error in standard errors"),
+        worst,
+        4.0,
+    )
+}
+
+/// About how far the light's nearest point is from the origin.
+fn lowest(light: &Light) -> f32 {
+    let seen = |direction: Vec3| {
+        let ray = Ray::new(Vec3::ZERO, direction);
+        light.met(&ray).map(|(t, _)| t)
+    };
+    let nearest = (0..64).filter_map(|i| {
+        let angle = 2.4 * i as f32;
+        let height = (i as f32 + 0.5) / 64.0;
+        let ring = (1.0 - height * height).sqrt();
+        seen(Vec3::new(ring * angle.cos(), height, ring * angle.sin()))
+    });
+    let center = light.bounds().map_or(Vec3::Y, |bounds| bounds.center());
+    nearest.fold(center.length(), f32::min)
 }
 
 /// The largest error of the irradiance at the origin of a horizontal surface, in standard errors.

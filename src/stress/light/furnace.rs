@@ -7,12 +7,14 @@ use crate::material::Material;
 use crate::math::Vec3;
 use crate::sampling::Pattern;
 use crate::scene::{Background, Scene, Settings};
-use crate::stress::floor::settings;
+use crate::stress::check::deviation;
+use crate::stress::floor::{paths, settings};
 use crate::stress::scattering::{
     ELEVATIONS, ROUGHNESSES, albedo, bsdf, coated, energy_made, glossy, wo,
 };
-use crate::stress::scenes::{add_box, add_quad, radiance};
+use crate::stress::scenes::{add_box, add_quad, means, radiance};
 use crate::stress::{Check, Curve, Effort, Sweep};
+use crate::texture::TexturedRgb;
 
 /// What rounding in single precision may add to 1.
 const ROUNDING: f64 = 1e-5;
@@ -25,8 +27,12 @@ pub fn run(effort: Effort) -> Vec<Check> {
             matte(),
             ROUNDING,
         )
-        .noted(
-            "whitted adds what comes from everywhere as one term; there is no path technique yet",
+        .noted("whitted adds what comes from everywhere as one term"),
+        paths_in_a_box(effort),
+        Check::at_most(
+            "path, white boxes under a sky of 1: error",
+            paths_under_a_sky(),
+            ROUNDING,
         ),
         rendered(),
         made("Phong, exponent 0..1e8: energy made", phong_albedos(effort)),
@@ -62,6 +68,64 @@ fn matte() -> f64 {
         let angle = 2.4 * i as f32;
         let way = Vec3::new(angle.cos(), 0.02 * i as f32 - 1.0, angle.sin());
         f64::from((radiance(&scene, Vec3::splat(0.1), way, &deep()).g - 1.0).abs())
+    });
+    errors.fold(0.0, f64::max)
+}
+
+/// Inside of matte walls that give off what they take, after so many bounces that none is missing.
+fn paths_in_a_box(effort: Effort) -> Check {
+    let settings = Settings {
+        max_depth: 1024,
+        ..paths(Pattern::Random)
+    };
+    let worst = [0.0f32, 0.5, 0.9, 0.99].map(|albedo| {
+        let mut wall = Material::matte("wall", Rgb::splat(albedo));
+        wall.emission = TexturedRgb::constant(Rgb::splat(1.0 - albedo));
+        let mut scene = Scene::default();
+        add_box(&mut scene, Vec3::splat(-1.0), Vec3::splat(1.0), wall);
+        let eye = Vec3::new(0.1, 0.2, -0.3);
+        let means = means(
+            &scene,
+            eye,
+            Vec3::new(0.4, -0.3, 0.8),
+            &settings,
+            effort.pick(64, 1024),
+        );
+        deviation(&means, 1.0)
+    });
+    let worst = worst.into_iter().fold(0.0, f64::max);
+    Check::at_most(
+        "path, closed box, albedo 0..0.99, emission 1 - albedo: error in standard errors",
+        worst,
+        4.0,
+    )
+}
+
+/// White boxes in a white sky: every path ends in the sky.
+fn paths_under_a_sky() -> f64 {
+    let mut scene = Scene::default();
+    let white = || Material::matte("white", Rgb::WHITE);
+    add_box(
+        &mut scene,
+        Vec3::new(-1.0, -0.2, -1.0),
+        Vec3::new(1.0, 0.0, 1.0),
+        white(),
+    );
+    add_box(
+        &mut scene,
+        Vec3::new(-0.3, 0.0, -0.3),
+        Vec3::new(0.3, 0.9, 0.2),
+        white(),
+    );
+    scene.background.radiance = Rgb::WHITE;
+    let settings = Settings {
+        max_depth: 1024,
+        ..paths(Pattern::Sobol)
+    };
+    let errors = (0..50).map(|i| {
+        let angle = 2.4 * i as f32;
+        let eye = Vec3::new(3.0 * angle.cos(), 0.5 + 0.04 * i as f32, 3.0 * angle.sin());
+        f64::from((radiance(&scene, eye, 0.4 * Vec3::Y - eye, &settings).g - 1.0).abs())
     });
     errors.fold(0.0, f64::max)
 }

@@ -1,7 +1,10 @@
 //! No material gives back more light than it gets, beside what the numerical cases L7 and L10 try.
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
+#[path = "../common/mod.rs"]
 mod common;
+mod lobes;
+mod materials;
 
 use common::build::*;
 use common::floor::settings;

@@ -1,0 +1,127 @@
+//! Pictures of the surroundings: OpenEXR, Radiance HDR, and all that textures may be.
+
+use std::io::Cursor;
+use std::path::Path;
+
+use exr::prelude::{
+    MetaData, ReadChannels, ReadLayers, ReadSpecificChannel, Vec2, read as read_exr,
+};
+
+use super::{ImportError, files, images};
+use crate::color::{Rgb, srgb8_to_linear};
+use crate::light::Environment;
+use crate::scene::MAX_PIXELS;
+use crate::texture::Pixels;
+
+/// The first bytes of an OpenEXR file.
+const EXR: &[u8] = &[0x76, 0x2f, 0x31, 0x01];
+
+/// A picture of the surroundings in a file of its own.
+pub struct EnvironmentFile<'a> {
+    path: &'a Path,
+    bytes: Vec<u8>,
+}
+
+impl<'a> EnvironmentFile<'a> {
+    /// The bytes of the file at `path`.
+    ///
+    /// # Errors
+    /// Where it cannot be read.
+    pub fn read(path: &'a Path) -> Result<Self, ImportError> {
+        let bytes = files::read(path).map_err(|error| ImportError::io(path, error))?;
+        Ok(Self { path, bytes })
+    }
+
+    /// Columns and rows of an OpenEXR file.
+    fn exr_size(&self) -> Result<Option<[usize; 2]>, ImportError> {
+        if !self.bytes.starts_with(EXR) {
+            return Ok(None);
+        }
+        let metadata = MetaData::read_from_buffered(Cursor::new(&self.bytes), false)
+            .map_err(|error| self.damaged(&error.to_string()))?;
+        let sizes = metadata.headers.iter().map(|header| header.layer_size);
+        let size = sizes.max_by_key(|size| size.area()).unwrap_or(Vec2(0, 0));
+        if size.area() as u64 > MAX_PIXELS {
+            return Err(self.damaged(&format!(
+                "{} × {} pixels are more than {MAX_PIXELS}",
+                size.0, size.1
+            )));
+        }
+        Ok(Some([size.0, size.1]))
+    }
+
+    /// Bytes of memory that the environment will take, from the file's header alone; 0 where that
+    /// does not tell.
+    pub fn decoded_bytes(&self) -> u64 {
+        let pixel = size_of::<[f32; 3]>() as u64;
+        match self.exr_size() {
+            Ok(Some([width, height])) => (width * height) as u64 * pixel,
+            // Four channels, of a byte or of four.
+            _ => images::decoded_bytes(&self.bytes, "").unwrap_or(0),
+        }
+    }
+
+    /// The environment, times `factor`, turned about y; `None` where that is black.
+    ///
+    /// # Errors
+    /// Where the file is none that is known, or damaged.
+    pub fn decode(
+        &self,
+        factor: Rgb,
+        rotate_radians: f64,
+    ) -> Result<Option<Environment>, ImportError> {
+        let name = self.path.file_name().unwrap_or_default();
+        let name = name.to_string_lossy().into_owned();
+        let (size, pixels) = match self.exr_size()? {
+            Some(_) => self.exr_pixels()?,
+            None => self.image_pixels(&name)?,
+        };
+        Ok(Environment::new(name, size, pixels, factor, rotate_radians))
+    }
+
+    fn exr_pixels(&self) -> Result<([u32; 2], Vec<[f32; 3]>), ImportError> {
+        let image = read_exr()
+            .no_deep_data()
+            .largest_resolution_level()
+            .specific_channels()
+            .required("R")
+            .required("G")
+            .required("B")
+            .collect_pixels(
+                |Vec2(width, height), _| (width, vec![[0.0; 3]; width * height]),
+                |(width, pixels), Vec2(x, y), (r, g, b): (f32, f32, f32)| {
+                    pixels[y * *width + x] = [r, g, b];
+                },
+            )
+            .first_valid_layer()
+            .all_attributes()
+            .from_buffered(Cursor::new(&self.bytes))
+            .map_err(|error| self.damaged(&error.to_string()))?;
+        let (width, pixels) = image.layer_data.channel_data.pixels;
+        let height = pixels.len() / width.max(1);
+        Ok(([width as u32, height as u32], pixels))
+    }
+
+    fn image_pixels(&self, name: &str) -> Result<([u32; 2], Vec<[f32; 3]>), ImportError> {
+        let image = images::decode(&self.bytes, name).map_err(|what| {
+            // The sentence begins with the name, which the error has already.
+            let what = what.strip_prefix(name).unwrap_or(&what);
+            self.damaged(what.trim_start_matches([':', ' ']))
+        })?;
+        let pixels = match image.pixels {
+            Pixels::Rgba32F(pixels) => pixels.iter().map(|&[r, g, b, _]| [r, g, b]).collect(),
+            Pixels::Rgba8(pixels) => pixels
+                .iter()
+                .map(|&[r, g, b, _]| [r, g, b].map(srgb8_to_linear))
+                .collect(),
+        };
+        Ok(([image.width, image.height], pixels))
+    }
+
+    fn damaged(&self, what: &str) -> ImportError {
+        ImportError::invalid(
+            self.path,
+            format!("could not be read as a picture of the surroundings: {what}"),
+        )
+    }
+}

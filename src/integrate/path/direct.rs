@@ -1,0 +1,119 @@
+//! Light that is looked for: from a surface straight to the lights.
+
+use super::PathTracer;
+use super::lights::{Incident, Place};
+use super::shadow::transmittance;
+use super::walk::{Walk, beyond, through};
+use crate::color::Rgb;
+use crate::integrate::{RayKind, RayLog, RayRecord};
+use crate::light::ShadowEnd;
+use crate::prepare::Surface;
+use crate::sampling::Sampler;
+
+impl PathTracer<'_> {
+    /// Samples of a light at a surface that the camera sees, where all lights are looked at.
+    pub(super) fn samples_of(&self, light: u32) -> u32 {
+        self.samples.get(light as usize).copied().unwrap_or(1)
+    }
+
+    /// Direct light at `surface`, what of it leaves along the walk; `each` hears of the lights that it comes from.
+    pub(super) fn direct(
+        &self,
+        surface: &Surface,
+        walk: &Walk,
+        place: &Place,
+        sampler: &Sampler,
+        log: &mut RayLog,
+        mut each: impl FnMut(u32, Rgb),
+    ) -> Rgb {
+        if let Some(all) = self.lights.all_from(place) {
+            let mut total = Rgb::BLACK;
+            for (order, &light) in (0..).zip(all) {
+                let count = self.samples_of(light);
+                for j in 0..count {
+                    let u = sampler.light(walk.vertex, order, j, count);
+                    if let Some(incident) = self.lights.sample(light, place.receiver.point, u) {
+                        let value =
+                            self.gathered(surface, walk, light, &incident, count.into(), log);
+                        each(light, value);
+                        total += value;
+                    }
+                }
+            }
+            return total;
+        }
+        let chosen = self.lights.choose(place, sampler.light_choice(walk.vertex));
+        let Some((light, probability)) = chosen else {
+            return Rgb::BLACK;
+        };
+        let u = sampler.light(walk.vertex, 0, 0, 1);
+        (self.lights.sample(light, place.receiver.point, u)).map_or(Rgb::BLACK, |incident| {
+            let value = self.gathered(surface, walk, light, &incident, probability, log);
+            each(light, value);
+            value
+        })
+    }
+
+    /// What one sample of a light adds, of which `expected` are taken.
+    fn gathered(
+        &self,
+        surface: &Surface,
+        walk: &Walk,
+        light: u32,
+        incident: &Incident,
+        expected: f64,
+        log: &mut RayLog,
+    ) -> Rgb {
+        let at = &surface.interaction;
+        let wi = incident.wi;
+        let cos = at.shading_normal.dot(*wi);
+        let side = at.geometric_normal.dot(*wi);
+        if cos * side <= 0.0 {
+            return Rgb::BLACK;
+        }
+        // The end of the shadow ray may be on the other side than the centre of the light.
+        if let ShadowEnd::Point(end) = incident.shadow
+            && at.geometric_normal.dot(end - at.point) * side <= 0.0
+        {
+            return Rgb::BLACK;
+        }
+        let scattered = surface.eval(wi) * cos.abs();
+        if scattered.is_black() {
+            return Rgb::BLACK;
+        }
+        // What has no surface is not found by scattering.
+        let met = if incident.density == 0.0 {
+            0.0
+        } else {
+            f64::from(surface.pdf(wi))
+        };
+        let weight = (self.weighing).weight(true, expected * incident.density, met);
+        let unshadowed = incident.weight * scattered * (weight / expected as f32);
+        let ray = match incident.shadow {
+            ShadowEnd::Point(target) => at.spawn_ray_to(target),
+            ShadowEnd::Direction(direction) => at.spawn_ray(*direction),
+        };
+        let way = match incident.shadow {
+            ShadowEnd::Point(target) => target.distance(at.point),
+            ShadowEnd::Direction(_) => f32::INFINITY,
+        };
+        let around = if side > 0.0 {
+            walk.absorption
+        } else {
+            beyond(surface)
+        };
+        let absorbed = around.map_or(Rgb::WHITE, |absorption| {
+            through(absorption, self.scene.world_distance(way))
+        });
+        let value = unshadowed * absorbed * transmittance(self.scene, &ray);
+        let kind = RayKind::Shadow(light);
+        log.add(kind, || RayRecord {
+            kind,
+            depth: walk.scattered,
+            ray,
+            t: None,
+            weight: walk.throughput * value,
+        });
+        value
+    }
+}

@@ -1,0 +1,276 @@
+//! The way of a path from one surface that scatters it to the next, and the light that it meets there.
+
+use std::cmp::Ordering;
+
+use super::PathTracer;
+use super::lights::Place;
+use crate::bvh::Hit;
+use crate::color::Rgb;
+use crate::integrate::{RayKind, RayLog, RayRecord, Sight, Source};
+use crate::math::{Ray, UnitVec3};
+use crate::prepare::{Surface, TriangleId};
+use crate::sampling::Sampler;
+
+/// A path on its way.
+pub(super) struct Walk {
+    pub ray: Ray,
+    pub kind: RayKind,
+    /// What light from here on counts for.
+    pub throughput: Rgb,
+    /// Scattering events so far.
+    pub scattered: u32,
+    /// The number of the next vertex, by which random numbers are named.
+    pub vertex: u32,
+    /// Where the ray comes from, if lights were looked at from there.
+    pub departure: Option<Departure>,
+    /// Whether it has met mirrors and glass only: then it sees what the camera would see.
+    pub is_viewing: bool,
+    /// What the body that it is in takes from it, per metre.
+    pub absorption: Option<Rgb>,
+    /// Whether nothing is between it and the camera, not even glass.
+    pub is_clear: bool,
+    /// How far along the ray it has come.
+    pub passed: Option<Hit>,
+}
+
+/// A scattering by which a light may have been found in place of being looked at.
+#[derive(Clone, Copy)]
+pub(super) struct Departure {
+    pub place: Place,
+    /// Of the ray's direction, by solid angle.
+    pub density: f64,
+}
+
+/// What a walk came to.
+pub(super) enum End<'a> {
+    /// A surface that scatters it.
+    Surface(Surface<'a>),
+    /// Nothing more.
+    Nothing,
+}
+
+impl<'a> PathTracer<'a> {
+    /// Follows the ray to the next surface that scatters, adding the light that it meets.
+    pub(super) fn advance(
+        &self,
+        walk: &mut Walk,
+        sampler: &Sampler,
+        log: &mut RayLog,
+        total: &mut Rgb,
+    ) -> End<'a> {
+        loop {
+            let hit = self.scene.closest_hit(&walk.ray, walk.passed.as_ref());
+            if walk.passed.is_none() {
+                log.add(walk.kind, || RayRecord {
+                    kind: walk.kind,
+                    depth: walk.scattered,
+                    ray: walk.ray,
+                    t: hit.map(|h| h.t),
+                    weight: walk.throughput,
+                });
+            }
+            let mut radiance = Rgb::BLACK;
+            let end = self.lights_before(walk, hit.as_ref(), |_, light| radiance += light);
+            let kept = self.add(total, walk, radiance, walk.scattered, log);
+            if log.is_told() && !radiance.is_black() {
+                self.lights_before(walk, hit.as_ref(), |number, light| {
+                    log.light(self.source_of(number), walk.scattered, kept, light);
+                });
+            }
+            if let Some(t) = end {
+                self.see(walk, Sight::Light { t }, log);
+                return End::Nothing;
+            }
+            let Some(hit) = hit else {
+                let through = self.through_body(walk, f32::INFINITY);
+                let mut radiance = Rgb::BLACK;
+                self.beyond(walk, |_, light| radiance += light);
+                let kept = self.add(total, walk, through * radiance, walk.scattered, log);
+                if log.is_told() && !radiance.is_black() {
+                    self.beyond(walk, |source, light| {
+                        log.light(source, walk.scattered, kept, through * light);
+                    });
+                }
+                return End::Nothing;
+            };
+            walk.throughput = walk.throughput * self.through_body(walk, hit.t);
+            walk.passed = Some(hit);
+            if let Some(surface) = self.met(walk, &hit, sampler) {
+                self.see(walk, Sight::Surface(hit), log);
+                let radiance = self.emitted(walk, &surface, &hit);
+                let kept = self.add(total, walk, radiance, walk.scattered, log);
+                log.light(Source::Surface, walk.scattered, kept, radiance);
+                return End::Surface(surface);
+            }
+        }
+    }
+
+    /// What the camera sees is told once: it covers all that is behind it.
+    fn see(&self, walk: &mut Walk, sight: Sight, log: &mut RayLog) {
+        if walk.is_clear {
+            log.see(sight, 1.0);
+            walk.is_clear = false;
+        }
+    }
+
+    /// What the light with this number is.
+    pub(super) fn source_of(&self, light: u32) -> Source {
+        match (light as usize).cmp(&self.scene.lights.len()) {
+            Ordering::Less => Source::Light(light),
+            Ordering::Equal => Source::Background,
+            Ordering::Greater => Source::Surface,
+        }
+    }
+
+    /// The surface at `hit`, unless the walk goes on as if it were not there.
+    fn met(&self, walk: &mut Walk, hit: &Hit, sampler: &Sampler) -> Option<Surface<'a>> {
+        if walk.is_viewing && self.scene.visibility(&walk.ray, hit) <= 0.0 {
+            return None;
+        }
+        let surface = self.scene.surface(&walk.ray, hit);
+        let opacity = surface.material.opacity(&surface.lookup);
+        if opacity >= 1.0 {
+            return Some(surface);
+        }
+        if opacity <= 0.0 {
+            return None;
+        }
+        let u = sampler.crossing(walk.vertex);
+        walk.vertex += 1;
+        (u < opacity).then_some(surface)
+    }
+
+    /// Share of the light that the body around the walk lets through from where it is to `t`.
+    fn through_body(&self, walk: &Walk, t: f32) -> Rgb {
+        let Some(absorption) = walk.absorption else {
+            return Rgb::WHITE;
+        };
+        let way = (t - walk.passed.map_or(0.0, |h| h.t)) * walk.ray.direction.length();
+        through(absorption, self.scene.world_distance(way))
+    }
+
+    /// Adds light that was scattered `scattered` times, what is left of it; returns what it was counted for.
+    pub(super) fn add(
+        &self,
+        total: &mut Rgb,
+        walk: &Walk,
+        radiance: Rgb,
+        scattered: u32,
+        log: &mut RayLog,
+    ) -> Rgb {
+        let value = walk.throughput * radiance;
+        let most = value.max_channel();
+        if scattered < 2 || most <= self.clamp || !value.is_finite() {
+            *total += value;
+            return walk.throughput;
+        }
+        let share = self.clamp / most;
+        let kept = value * share;
+        log.counts.clamped += f64::from((value - kept).luminance());
+        *total += kept;
+        walk.throughput * share
+    }
+
+    /// Gives `add` the number and the light of each of the scene's lights whose surfaces the ray meets before
+    /// `hit`; returns where it ends, if at one of them.
+    ///
+    /// A camera, and its image in a mirror, sees lights as things that hide what is behind them. For rays
+    /// that are weighed against shadow rays lights hide nothing, as they do for those.
+    fn lights_before(
+        &self,
+        walk: &Walk,
+        hit: Option<&Hit>,
+        mut add: impl FnMut(u32, Rgb),
+    ) -> Option<f32> {
+        let start = walk.passed.map_or(0.0, |h| h.t);
+        let end = hit.map_or(walk.ray.t_max, |h| h.t);
+        let met = self.surfaces.iter().filter_map(|&number| {
+            let light = &self.scene.lights[number as usize];
+            let (t, radiance) = light.met(&walk.ray)?;
+            (t > start && t < end).then_some((number, light.is_visible(), t, radiance))
+        });
+        if let Some(departure) = &walk.departure {
+            for (number, _, t, radiance) in met {
+                let weight = self.weight(departure, number, &walk.ray);
+                add(number, radiance * weight * self.through_body(walk, t));
+            }
+            return None;
+        }
+        let last = (met.clone())
+            .filter(|(_, is_visible, ..)| *is_visible)
+            .min_by(|(_, _, a, _), (_, _, b, _)| a.total_cmp(b));
+        let last = last.map(|(_, _, t, _)| t);
+        let end = last.unwrap_or(f32::INFINITY);
+        for (number, is_visible, t, radiance) in met {
+            if t == end && is_visible || walk.scattered > 0 && !is_visible && t < end {
+                add(number, radiance * self.through_body(walk, t));
+            }
+        }
+        last
+    }
+
+    /// Gives `add` what comes from beyond the scene, and where from.
+    fn beyond(&self, walk: &Walk, mut add: impl FnMut(Source, Rgb)) {
+        if walk.is_clear && self.is_transparent {
+            return;
+        }
+        let Some(wi) = UnitVec3::normalize(walk.ray.direction) else {
+            return add(Source::Background, self.scene.background.radiance);
+        };
+        if walk.scattered == 0 {
+            return add(Source::Background, self.scene.radiance_beyond(&walk.ray));
+        }
+        add(Source::Background, self.scene.background.radiance);
+        for (light, radiance) in self.lights.beyond(wi) {
+            if !radiance.is_black() {
+                let weight =
+                    (walk.departure.as_ref()).map_or(1.0, |d| self.weight(d, light, &walk.ray));
+                add(self.source_of(light), radiance * weight);
+            }
+        }
+    }
+
+    /// Light that `surface` gives off along the walk.
+    fn emitted(&self, walk: &Walk, surface: &Surface, hit: &Hit) -> Rgb {
+        // The back of what is seen from one side only gives no light.
+        if !surface.interaction.is_front && !surface.material.is_seen_from_back() {
+            return Rgb::BLACK;
+        }
+        let radiance = surface.material.emitted(&surface.lookup);
+        match (&walk.departure, radiance.is_black()) {
+            (Some(departure), false) => match self.lights.number_of(TriangleId::of(hit)) {
+                Some(light) => radiance * self.weight(departure, light, &walk.ray),
+                None => radiance,
+            },
+            _ => radiance,
+        }
+    }
+
+    /// What a light counts for that was met by a ray from `departure`: the power heuristic.
+    fn weight(&self, departure: &Departure, light: u32, ray: &Ray) -> f32 {
+        let Some(wi) = UnitVec3::normalize(ray.direction) else {
+            return 1.0;
+        };
+        let place = &departure.place;
+        let expected = self
+            .lights
+            .expected(place, light, |light| self.samples_of(light));
+        if expected == 0.0 {
+            return 1.0;
+        }
+        let looked = expected * self.lights.density(light, place.receiver.point, wi);
+        self.weighing.weight(false, departure.density, looked)
+    }
+}
+
+/// What the body on the far side of `surface` takes from light, per metre.
+pub(super) fn beyond(surface: &Surface) -> Option<Rgb> {
+    surface
+        .absorption()
+        .filter(|_| surface.interaction.is_front)
+}
+
+/// Share of the light that comes through `metres` of a body (Beer's law).
+pub(super) fn through(absorption: Rgb, metres: f32) -> Rgb {
+    absorption.map(|a| if a > 0.0 { (-a * metres).exp() } else { 1.0 })
+}

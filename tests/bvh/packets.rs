@@ -1,0 +1,134 @@
+//! Rays that are traced together find what each finds by itself, bit for bit.
+
+use glam::Vec3;
+use halfshade::bvh::Bvh;
+use halfshade::math::Ray;
+
+use super::meshes::{Mesh, Random, bunny, soup, sphere, terrain};
+
+/// Holds what all of `rays` find together against what each finds alone, in every tree of `mesh`; returns the share
+/// that hit.
+fn check(mesh: &Mesh, rays: &[Ray]) -> f64 {
+    let mut share = 0.0;
+    for (name, tree) in mesh.trees() {
+        share = check_in(&tree, rays, &name);
+    }
+    share
+}
+
+fn check_in(tree: &Bvh, rays: &[Ray], name: &str) -> f64 {
+    let mut hits = vec![None; rays.len()];
+    let mut blocked = vec![false; rays.len()];
+    tree.closest_hits(rays, &mut hits);
+    tree.any_hits(rays, &mut blocked);
+    for (i, ray) in rays.iter().enumerate() {
+        let alone = tree.closest_hit(ray);
+        // `Debug` shows every bit of a float.
+        assert_eq!(
+            format!("{:?}", hits[i]),
+            format!("{alone:?}"),
+            "{name}, ray {i}: {ray:?}"
+        );
+        assert_eq!(blocked[i], alone.is_some(), "{name}, ray {i}: {ray:?}");
+    }
+    hits.iter().flatten().count() as f64 / rays.len() as f64
+}
+
+/// Rays from `eye` to points near `target`, as of `width`² neighbouring pixels.
+fn camera(eye: Vec3, target: Vec3, size: f32, width: u32) -> Vec<Ray> {
+    let ahead = target - eye;
+    let right = ahead.any_orthonormal_vector();
+    let up = right.cross(ahead.normalize());
+    let place = |k: u32| 2.0 * (k as f32 + 0.5) / width as f32 - 1.0;
+    let rays = (0..width * width).map(|i| {
+        let aim = target + size * (place(i % width) * right + place(i / width) * up);
+        Ray::new(eye, aim - eye)
+    });
+    rays.collect()
+}
+
+#[test]
+fn camera_rays() {
+    for (mesh, target) in [
+        (sphere(4), Vec3::ZERO),
+        (soup(3000, 1), Vec3::ZERO),
+        (terrain(40), Vec3::ZERO),
+    ] {
+        for (eye, size) in [
+            (Vec3::new(0.3, 2.0, 3.0), 1.0),
+            (Vec3::new(-5.0, 0.4, 0.2), 0.02),
+            (Vec3::new(0.0, 0.0, 4.0), 0.3),
+            (Vec3::new(2.0, 2.0, 2.0), 0.5),
+        ] {
+            check(&mesh, &camera(eye, target, size, 24));
+        }
+    }
+    let share = check(&sphere(4), &camera(4.0 * Vec3::X, Vec3::ZERO, 0.5, 16));
+    assert!(share > 0.9, "{share}");
+}
+
+#[test]
+fn shadow_rays_that_end_at_a_disk() {
+    let mesh = sphere(4);
+    let mut random = Random(3);
+    let mut rays = Vec::new();
+    for i in 0..640 {
+        let start = Vec3::new(0.01 * (i % 25) as f32, -2.0, 0.01 * (i / 25) as f32);
+        let end = Vec3::new(0.4 * random.unit(), 3.0, 0.4 * random.unit());
+        rays.push(Ray {
+            t_max: [0.1, 0.999, 1.0][i % 3],
+            ..Ray::new(start, end - start)
+        });
+    }
+    let share = check(&mesh, &rays);
+    assert!(share > 0.3 && share < 1.0, "{share}");
+}
+
+#[test]
+fn at_any_scale_and_place() {
+    for scale in [1e-30, 1e-12, 1e12, 1e17] {
+        let mesh = sphere(3).map(|p| scale * p);
+        let rays = camera(scale * Vec3::new(1.0, 2.0, 5.0), Vec3::ZERO, 0.2, 16);
+        check(&mesh, &rays);
+    }
+    for shift in [1e2, 1e4, 1e6] {
+        let mesh = sphere(3).map(|p| p + shift);
+        let eye = Vec3::splat(shift) + Vec3::new(1.0, 2.0, 5.0);
+        check(&mesh, &camera(eye, Vec3::splat(shift), 0.2, 16));
+    }
+}
+
+#[test]
+fn rays_that_have_nothing_in_common_or_are_none() {
+    let mesh = soup(300, 2);
+    let mut rays = mesh.rays(500, 4);
+    for direction in [
+        Vec3::ZERO,
+        Vec3::NAN,
+        Vec3::new(f32::INFINITY, 0.0, 1.0),
+        Vec3::new(1.0, f32::NAN, 0.0),
+        Vec3::X,
+    ] {
+        rays.push(Ray::new(Vec3::ZERO, direction));
+        rays.push(Ray::new(Vec3::NAN, direction));
+    }
+    check(&mesh, &rays);
+    for few in 0..9 {
+        check(&mesh, &rays[..few.min(rays.len())]);
+    }
+    // Parallel to an axis, along edges of the boxes.
+    let along = (0..100).map(|i| Ray::new(Vec3::new(0.0, 0.1 * i as f32 - 5.0, -9.0), Vec3::Z));
+    check(&mesh, &along.collect::<Vec<_>>());
+    check(&soup(0, 1), &rays[..70]);
+}
+
+#[test]
+fn many_small_triangles() {
+    let Some(mesh) = bunny() else {
+        return;
+    };
+    let rays = camera(Vec3::new(0.0, 0.1, 0.5), Vec3::new(0.0, 0.1, 0.0), 0.15, 40);
+    for (name, tree) in mesh.trees().into_iter().take(3) {
+        check_in(&tree, &rays, &name);
+    }
+}

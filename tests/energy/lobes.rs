@@ -1,0 +1,309 @@
+//! Samples of scattering follow the density that is said of them, and carry the weight that
+//! belongs to it.
+
+use std::f64::consts::{PI, TAU};
+
+use halfshade::color::Rgb;
+use halfshade::material::{Bsdf, Lookup, MAX_UV_SETS, Material, View};
+use halfshade::math::{DVec3, Frame, UnitVec3, Vec2};
+
+use crate::common::chi_square::{Moments, p_value};
+use crate::materials::{self, Case, cases};
+
+/// Rows of equal solid angle over the sphere, and columns of each.
+const ROWS: usize = 24;
+const COLUMNS: usize = 24;
+/// Cuts of each side of a bin when its density is integrated.
+const CUTS: usize = 12;
+
+/// How a flat surface with the normal z is seen from so many degrees above it.
+pub fn view(degrees_above: f64, is_inside: bool) -> View {
+    let (sin, cos) = degrees_above.to_radians().sin_cos();
+    let turned = DVec3::new(cos * 0.8, cos * 0.6, sin);
+    View {
+        frame: Frame {
+            tangent: halfshade::math::Vec3::X,
+            bitangent: halfshade::math::Vec3::Y,
+            normal: UnitVec3::Z,
+        },
+        wo: UnitVec3::normalize(turned.as_vec3()).unwrap(),
+        coat_normal: UnitVec3::Z,
+        is_inside,
+    }
+}
+
+pub fn bsdf(material: &Material) -> Bsdf {
+    material.bsdf(&Lookup {
+        textures: &[],
+        images: &[],
+        uvs: [Vec2::ZERO; MAX_UV_SETS],
+        color: [1.0; 4],
+    })
+}
+
+/// Points of a lattice that fills the unit cube evenly (Korobov; the plastic number's powers).
+fn point(i: u32) -> (f32, Vec2) {
+    let i = f64::from(i);
+    let at = |step: f64| ((0.5 + i * step).fract()) as f32;
+    let clamp = |v: f32| v.min(0.999_999_94);
+    (
+        clamp(at(0.819_172_513_396)),
+        Vec2::new(clamp(at(0.671_043_606_704)), clamp(at(0.549_700_477_902))),
+    )
+}
+
+/// Independent numbers in `[0, 1)` (SplitMix64).
+fn random(state: &mut u64) -> f32 {
+    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let mut z = *state;
+    z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((z ^ z >> 31) >> 40) as f32 / 16_777_216.0
+}
+
+fn direction(z: f64, phi: f64) -> UnitVec3 {
+    let ring = (1.0 - z * z).max(0.0).sqrt();
+    let v = DVec3::new(ring * phi.cos(), ring * phi.sin(), z);
+    UnitVec3::normalize(v.as_vec3()).unwrap()
+}
+
+fn bin_of(wi: UnitVec3) -> usize {
+    let row = ((f64::from(wi.z) * 0.5 + 0.5) * ROWS as f64) as usize;
+    let phi = f64::from(wi.y).atan2(f64::from(wi.x)).rem_euclid(TAU);
+    let column = (phi / TAU * COLUMNS as f64) as usize;
+    row.min(ROWS - 1) * COLUMNS + column.min(COLUMNS - 1)
+}
+
+/// The density's integral over each bin.
+fn expected(bsdf: &Bsdf, view: &View) -> Vec<f64> {
+    let mut shares = vec![0.0; ROWS * COLUMNS];
+    let cell = 4.0 * PI / (ROWS * COLUMNS * CUTS * CUTS) as f64;
+    for (bin, share) in shares.iter_mut().enumerate() {
+        let (row, column) = (bin / COLUMNS, bin % COLUMNS);
+        for cut in 0..CUTS * CUTS {
+            let middle =
+                |whole: usize, part: usize| whole as f64 + (part as f64 + 0.5) / CUTS as f64;
+            let z = 2.0 * middle(row, cut / CUTS) / ROWS as f64 - 1.0;
+            let phi = TAU * middle(column, cut % CUTS) / COLUMNS as f64;
+            *share += f64::from(bsdf.pdf(view, direction(z, phi))) * cell;
+        }
+    }
+    shares
+}
+
+#[test]
+fn samples_follow_their_density() {
+    const SAMPLES: u32 = 60_000;
+    let mut least: (f64, String) = (1.0, String::new());
+    let mut tests = 0;
+    for Case {
+        name,
+        material,
+        is_inside,
+        ..
+    } in cases().iter().filter(|case| case.is_wide)
+    {
+        let bsdf = bsdf(material);
+        for degrees in [8.0, 40.0, 80.0] {
+            let view = view(degrees, *is_inside);
+            let shares = expected(&bsdf, &view);
+            let mut counts = vec![0; shares.len()];
+            let mut elsewhere = 0;
+            let mut state = 7;
+            for _ in 0..SAMPLES {
+                let u_lobe = random(&mut state);
+                let u = Vec2::new(random(&mut state), random(&mut state));
+                match bsdf.sample(&view, u_lobe, u) {
+                    Some(sample) if !sample.is_specular => counts[bin_of(sample.wi)] += 1,
+                    _ => elsewhere += 1,
+                }
+            }
+            let what = format!("{name}, {degrees} degrees");
+            let total: f64 = shares.iter().sum();
+            assert!(total < 1.0 + 1e-2, "{what}: densities add up to {total}");
+            // Bins that expect little are put together, with what comes from nowhere.
+            let mut rest = (elsewhere, (1.0 - total).max(0.0));
+            let (mut kept, mut probabilities) = (Vec::new(), Vec::new());
+            for (&count, &share) in counts.iter().zip(&shares) {
+                if share * f64::from(SAMPLES) < 12.0 {
+                    rest = (rest.0 + count, rest.1 + share);
+                } else {
+                    kept.push(count);
+                    probabilities.push(share);
+                }
+            }
+            if rest.1 * f64::from(SAMPLES) >= 12.0 {
+                kept.push(rest.0);
+                probabilities.push(rest.1);
+            } else {
+                assert!(
+                    rest.0 < 60,
+                    "{what}: {} samples where none are expected",
+                    rest.0
+                );
+            }
+            let p = p_value(&kept, &probabilities);
+            tests += 1;
+            if p < least.0 {
+                least = (p, what);
+            }
+        }
+    }
+    let limit = 1e-3 / f64::from(tests);
+    assert!(least.0 > limit, "p {:e} < {limit:e}: {}", least.0, least.1);
+}
+
+#[test]
+fn weights_are_value_times_cosine_over_density() {
+    for Case {
+        name,
+        material,
+        is_inside,
+        ..
+    } in &cases()
+    {
+        let bsdf = bsdf(material);
+        for degrees in [3.0, 25.0, 60.0, 90.0] {
+            let view = view(degrees, *is_inside);
+            for i in 0..2000 {
+                let (u_lobe, u) = point(i);
+                let Some(sample) = bsdf.sample(&view, u_lobe, u) else {
+                    continue;
+                };
+                let what = format!("{name}, {degrees} degrees, {sample:?}");
+                assert_eq!(sample.is_transmitted, sample.wi.z < 0.0, "{what}");
+                assert!(sample.weight.is_finite(), "{what}");
+                assert!((sample.wi.length() - 1.0).abs() < 1e-5, "{what}");
+                if sample.is_specular {
+                    assert_eq!(sample.pdf, 0.0, "{what}");
+                    continue;
+                }
+                let pdf = bsdf.pdf(&view, sample.wi);
+                assert!((pdf - sample.pdf).abs() <= 1e-4 * pdf, "{what}: {pdf}");
+                let exact = bsdf.value(&view, sample.wi) * (sample.wi.z.abs() / pdf);
+                let error = (exact - sample.weight).map(f32::abs).max_channel();
+                assert!(error <= 1e-4 * exact.max_channel(), "{what}: {exact:?}");
+            }
+        }
+    }
+}
+
+/// The share of the light of a uniform sky that comes to the viewer, per channel.
+pub fn mean_weight(bsdf: &Bsdf, view: &View, samples: u32) -> [Moments; 3] {
+    let mut moments = [Moments::default(); 3];
+    for i in 0..samples {
+        let (u_lobe, u) = point(i);
+        let sample = bsdf.sample(view, u_lobe, u);
+        let weight = sample.map_or(Rgb::BLACK, |sample| sample.weight);
+        for (moments, channel) in moments.iter_mut().zip(weight.channels()) {
+            moments.add(channel.into());
+        }
+    }
+    moments
+}
+
+#[test]
+fn no_lobe_gives_back_more_than_it_gets() {
+    let mut faults = Vec::new();
+    for Case {
+        name,
+        material,
+        is_inside,
+        ..
+    } in &cases()
+    {
+        let bsdf = bsdf(material);
+        for degrees in [0.5, 3.0, 10.0, 30.0, 60.0, 90.0] {
+            for (channel, moments) in mean_weight(&bsdf, &view(degrees, *is_inside), 6000)
+                .iter()
+                .enumerate()
+            {
+                let got = moments.mean();
+                let slack = 1e-4 + 4.0 * moments.standard_error();
+                if got > 1.0 + slack {
+                    faults.push(format!(
+                        "{name}, {degrees} degrees, channel {channel}: {got} ± {slack}"
+                    ));
+                }
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+#[test]
+fn reflection_is_the_same_both_ways() {
+    for Case {
+        name,
+        material,
+        is_inside,
+        ..
+    } in &cases()
+    {
+        let bsdf = bsdf(material);
+        for i in 0..1500 {
+            let (a, u) = point(i);
+            let there = direction(f64::from(a) * 0.99 + 0.01, TAU * f64::from(u.x));
+            let back = direction(f64::from(u.y) * 0.99 + 0.01, 40.0 * f64::from(a));
+            let seen = |wo| View {
+                wo,
+                ..view(90.0, *is_inside)
+            };
+            let f = bsdf.value(&seen(there), back);
+            let g = bsdf.value(&seen(back), there);
+            let error = (f - g).map(f32::abs).max_channel();
+            assert!(
+                error <= 2e-4 * f.max_channel().max(g.max_channel()),
+                "{name}: {f:?} {g:?}"
+            );
+        }
+    }
+}
+
+/// What rough surfaces lose: light that meets several facets is added by tables, but for that
+/// which is refracted.
+#[test]
+fn white_lobes_lose_little() {
+    let kinds: [(&str, fn(f32) -> Material, f64); 4] = [
+        ("metal", materials::metal, 0.005),
+        ("plastic", materials::plastic, 0.005),
+        (
+            "pane",
+            |roughness| materials::glass(roughness, false, 0.0),
+            0.02,
+        ),
+        (
+            "body",
+            |roughness| materials::glass(roughness, true, 0.0),
+            0.25,
+        ),
+    ];
+    for (name, material, most) in kinds {
+        let mut text = String::new();
+        for roughness in [0.05, 0.2, 0.4, 0.6, 0.8, 1.0f32] {
+            let bsdf = bsdf(&material(roughness));
+            let losses = [10.0, 30.0, 60.0, 90.0].map(|degrees| {
+                let [_, green, _] = mean_weight(&bsdf, &view(degrees, false), 8000);
+                assert!(
+                    green.standard_error() < 5e-3,
+                    "{name}, {roughness}, {degrees}"
+                );
+                (
+                    1.0 - green.mean() - 4.0 * green.standard_error(),
+                    1.0 - green.mean(),
+                )
+            });
+            let worst = losses
+                .into_iter()
+                .map(|(least, _)| least)
+                .fold(0.0, f64::max);
+            assert!(
+                worst < most,
+                "{name}, roughness {roughness}: {worst} of the light is lost"
+            );
+            let largest = losses.into_iter().map(|(_, loss)| loss).fold(0.0, f64::max);
+            text += &format!(" {roughness}: {:.1} %", 100.0 * largest);
+        }
+        println!("{name}: the most that is lost from any side, by roughness:{text}");
+    }
+}
