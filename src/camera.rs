@@ -1,6 +1,6 @@
 //! Cameras: from a point on the film to a ray.
 
-use crate::math::{Ray, UVec2, UnitVec3, Vec2, Vec3};
+use crate::math::{Mat3, Ray, UVec2, UnitVec3, Vec2, Vec3};
 
 /// A camera at a place, looking along a direction.
 #[derive(Clone, Copy, Debug)]
@@ -75,6 +75,20 @@ impl Camera {
             },
             lens_radius: self.lens_radius * scale,
             focus_distance: self.focus_distance * scale,
+            ..*self
+        }
+    }
+
+    /// This camera turned by `radians` about the y axis through `center`, a point in its coordinates; from above
+    /// against the clock.
+    pub fn turned(&self, center: Vec3, radians: f32) -> Self {
+        let rotation = Mat3::from_rotation_y(radians);
+        let turned = |v: UnitVec3| UnitVec3::normalize(rotation * *v).unwrap_or(v);
+        Self {
+            position: center + rotation * (self.position - center),
+            right: turned(self.right),
+            up: turned(self.up),
+            back: turned(self.back),
             ..*self
         }
     }
@@ -163,6 +177,24 @@ mod tests {
         let bottom = rays.at(Vec2::new(40.0, 60.0), Vec2::ZERO).direction;
         assert!((top.angle_between(bottom) - 1.0).abs() < 1e-5);
         assert!(top.y > 0.0);
+    }
+
+    #[test]
+    fn a_turned_camera_sees_the_centre_at_the_same_place() {
+        let center = Vec3::new(1.0, 0.5, -2.0);
+        for step in 0..8 {
+            let turned = camera().turned(center, step as f32 * std::f32::consts::FRAC_PI_4);
+            let seen = |camera: Camera| {
+                let to = center - camera.position;
+                [camera.right, camera.up, camera.back].map(|axis| to.dot(*axis))
+            };
+            let both = seen(turned).into_iter().zip(seen(camera()));
+            assert!(both.into_iter().all(|(a, b)| (a - b).abs() < 1e-5));
+            assert!(turned.right.cross(*turned.up).dot(*turned.back) > 0.999_99);
+        }
+        // A quarter of the way: from +z to +x.
+        let quarter = camera().turned(Vec3::ZERO, std::f32::consts::FRAC_PI_2);
+        assert!((quarter.position - Vec3::new(5.0, 0.0, 0.0)).length() < 1e-5);
     }
 
     #[test]

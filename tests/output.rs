@@ -29,7 +29,7 @@ fn decoded_png(bytes: &[u8]) -> (png::Info<'static>, Vec<u8>) {
 
 fn encoded_png(size: UVec2, pixels: &[Rgb], options: PngOptions) -> Vec<u8> {
     let mut bytes = Vec::new();
-    png_file::encode(&mut bytes, size, pixels, options).unwrap();
+    png_file::encode(&mut bytes, size, pixels, None, options).unwrap();
     bytes
 }
 
@@ -80,6 +80,33 @@ fn the_tone_map_reaches_the_file() {
     assert_eq!(levels, [232; 3]);
 }
 
+/// Half of a pixel covered by linear 0.5, nothing, and a bit that rounding made brighter than its share.
+#[test]
+fn opacity_is_straight_in_png() {
+    let pixels = [Rgb::new(0.25, 0.5, 0.0), Rgb::BLACK, Rgb::splat(0.25)];
+    let alpha = [0.5, 0.0, 0.2];
+    for bits in [PngBits::Eight, PngBits::Sixteen] {
+        let options = PngOptions {
+            bits,
+            ..PngOptions::default()
+        };
+        let mut bytes = Vec::new();
+        png_file::encode(&mut bytes, UVec2::new(3, 1), &pixels, Some(&alpha), options).unwrap();
+        let (info, bytes) = decoded_png(&bytes);
+        assert_eq!(info.color_type, png::ColorType::Rgba);
+        // The first byte of a level of 16 bits is nearly that of 8.
+        let step = match bits {
+            PngBits::Eight => 1,
+            PngBits::Sixteen => 2,
+        };
+        let levels: Vec<u8> = bytes.iter().step_by(step).copied().collect();
+        // sRGB of linear 0.5 is 0.7354.
+        let expected = [188, 255, 0, 128, 0, 0, 0, 0, 255, 255, 255, 51];
+        let is_near = |(a, b): (&u8, &u8)| a.abs_diff(*b) <= 1;
+        assert!(levels.iter().zip(&expected).all(is_near), "{levels:?}");
+    }
+}
+
 #[test]
 fn exr_keeps_every_bit_in_named_channels_of_one_part() {
     use exr::prelude::*;
@@ -105,7 +132,11 @@ fn exr_keeps_every_bit_in_named_channels_of_one_part() {
     ];
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.exr");
-    let metadata = [("seed", "7".to_owned()), ("scene", "haus-ü-☃".to_owned())];
+    let metadata = [
+        ("seed", "7".to_owned()),
+        ("cryptomatte/0123456/name", "CryptoObject".to_owned()),
+        ("scene", "haus-ü-☃".to_owned()),
+    ];
     exr_file::write(&path, Window::whole(SIZE), &layers, &metadata).unwrap();
 
     let image = read_all_flat_layers_from_file(&path).unwrap();
@@ -147,6 +178,9 @@ fn exr_keeps_every_bit_in_named_channels_of_one_part() {
         panic!("{text:?} is not text");
     };
     assert_eq!(text.to_string(), "seed = 7\nscene = haus-ü-?\n");
+    let key = Text::from("cryptomatte/0123456/name");
+    let name = part.attributes.other.get(&key).unwrap();
+    assert_eq!(*name, AttributeValue::Text(Text::from("CryptoObject")));
 }
 
 #[test]
@@ -184,7 +218,10 @@ fn the_same_picture_makes_the_same_bytes() {
     let metadata = [
         ("samples", "64".to_owned()),
         ("seed", "0".to_owned()),
-        ("pattern", "sobol".to_owned()),
+        ("a/b", "1".to_owned()),
+        ("a/c", "22".to_owned()),
+        ("a/d", "333".to_owned()),
+        ("e/f", "4444".to_owned()),
     ];
     let encoded = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);

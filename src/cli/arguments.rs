@@ -100,12 +100,25 @@ pub fn bytes(text: &str) -> Result<u64, String> {
         .ok_or_else(|| "not a number of bytes like 500M or 4G".to_owned())
 }
 
-/// Stops of exposure.
-pub fn stops(text: &str) -> Result<f32, String> {
+/// How bright a picture is shown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Exposure {
+    /// By so many stops brighter than it is.
+    Stops(f32),
+    /// So that it is neither dark nor bright.
+    Automatic,
+}
+
+/// Stops of exposure, or `auto`.
+pub fn exposure(text: &str) -> Result<Exposure, String> {
+    if text.trim() == "auto" {
+        return Ok(Exposure::Automatic);
+    }
     let stops: Option<f32> = text.trim().parse().ok();
     stops
         .filter(|stops| stops.abs() <= 100.0)
-        .ok_or_else(|| "not a number of stops from -100 to 100".to_owned())
+        .map(Exposure::Stops)
+        .ok_or_else(|| "neither auto nor a number of stops from -100 to 100".to_owned())
 }
 
 #[cfg(test)]
@@ -171,7 +184,12 @@ mod tests {
 
     #[test]
     fn stops_are_finite() {
-        assert_eq!(stops("-1.5"), Ok(-1.5));
-        assert!(stops("nan").is_err() && stops("inf").is_err() && stops("x").is_err());
+        assert_eq!(exposure("-1.5"), Ok(Exposure::Stops(-1.5)));
+        assert_eq!(exposure("auto"), Ok(Exposure::Automatic));
+        assert!(
+            ["nan", "inf", "x"]
+                .iter()
+                .all(|wrong| exposure(wrong).is_err())
+        );
     }
 }

@@ -99,7 +99,13 @@ pub fn write(
 ) -> Result<(), OutputError> {
     if is(path, "png") {
         let picture = with_bar(&map.errors(pair, maps), map.scale());
-        png::write(path, picture.size, &picture.pixels, PngOptions::default())
+        png::write(
+            path,
+            picture.size,
+            &picture.pixels,
+            None,
+            PngOptions::default(),
+        )
     } else {
         write_whole(path, |file| {
             let page = page(pictures, pair, maps, report)?;

@@ -6,15 +6,16 @@ use clap::Args;
 use halfshade::bvh::Builder;
 use halfshade::film::Rect;
 use halfshade::import::SceneOptions;
+use halfshade::integrate::Aov;
 use halfshade::math::UVec2;
 use halfshade::sampling::{Pattern, Target};
 use halfshade::scene::{
     IntegratorKind, Keep, MAX_DEPTH, MAX_LIGHT_SAMPLES, MAX_SAMPLES, Needs, Settings, ToneMap,
 };
 
-use super::arguments::{self, SampleId};
+use super::arguments::{self, Exposure, SampleId};
 use super::console::Console;
-use super::layers::LayerKind;
+use super::layers::{GUIDES, LayerKind};
 use super::names::{self, one_of};
 
 const EXAMPLES: &str = "\
@@ -27,6 +28,8 @@ Examples:
       as many samples as it takes, where they are needed
   halfshade render scenes/house.toml --time 10
       the best picture that ten seconds give
+  halfshade render bunny.obj --orbit 36 --transparent --exposure auto -o bunny.png
+      36 pictures from all around, bunny.0001.png and so on, of the bunny alone
   halfshade render scenes/house.toml --set light.0.angle=0 --crop 100,50,64,64 -o part.exr
       a hard shadow of the sun
 
@@ -100,6 +103,12 @@ pub struct PictureOptions {
     /// Which of the scene's cameras [default: the scene's choice, or the first]
     #[arg(long, value_name = "NAME")]
     pub camera: Option<String>,
+    /// Go around the scene once in this many pictures, which are numbered like name.0001.png
+    #[arg(long, value_name = "N", conflicts_with_all = ["replay", "time"], value_parser = clap::value_parser!(u32).range(1..=9999))]
+    pub orbit: Option<u32>,
+    /// The background is seen by nothing but mirrors and glass, and pictures have an opacity [default: what the scene says]
+    #[arg(long)]
+    pub transparent: bool,
     /// What is computed [default: the scene's; path for a glTF file by itself; or whitted]
     #[arg(long, value_name = "KIND", value_parser = one_of(IntegratorKind::ALL, IntegratorKind::name))]
     pub integrator: Option<IntegratorKind>,
@@ -195,15 +204,18 @@ pub struct OutputOptions {
     /// A .png or .exr file; may be given again [default: the scene's name with .png, in this folder]
     #[arg(short, long, value_name = "FILE")]
     pub output: Vec<PathBuf>,
-    /// Stops of exposure (PNG) [default: 0]
-    #[arg(long, value_name = "EV", allow_negative_numbers = true, value_parser = arguments::stops)]
-    pub exposure: Option<f32>,
+    /// Stops of exposure; auto brings the middle of the picture to middle grey, and says the number (PNG) [default: 0]
+    #[arg(long, value_name = "EV|auto", allow_negative_numbers = true, value_parser = arguments::exposure)]
+    pub exposure: Option<Exposure>,
     /// What happens to what is too bright; none clips it (PNG) [default: none]
     #[arg(long, value_parser = one_of(ToneMap::ALL, ToneMap::name))]
     pub tone_map: Option<ToneMap>,
     /// 16 bits a channel (PNG)
     #[arg(long)]
     pub png16: bool,
+    /// Take the noise out of the picture with Open Image Denoise, if its library is there; layers keep theirs
+    #[arg(long)]
+    pub denoise: bool,
     /// Layers beside the picture, with commas between them (EXR)
     #[arg(long, value_delimiter = ',', value_parser = one_of(LayerKind::ALL, LayerKind::name))]
     pub layers: Vec<LayerKind>,
@@ -242,8 +254,10 @@ impl RenderOptions {
             options.overrides.push(size);
         }
         options.keep = self.work.keep.keep();
-        let views = self.output.layers.iter().filter_map(|layer| layer.view());
-        options.layers = views.fold(Needs::default(), |all, view| all.and(view.needs()));
+        let aovs = self.output.layers.iter().filter_map(|layer| layer.aov());
+        let guides = self.output.denoise.then_some(GUIDES.map(Aov::View));
+        let aovs = aovs.chain(guides.into_iter().flatten());
+        options.layers = aovs.fold(Needs::default(), |all, aov| all.and(aov.needs()));
         // Nor these: what neither picture nor layers read is left out at once.
         if let Some(integrator) = self.picture.integrator {
             let kind = format!("{:?}", integrator.name());
@@ -267,6 +281,7 @@ impl RenderOptions {
         put(self.sampling.target, &mut settings.sampling.target);
         put(self.sampling.seed, &mut settings.sampling.seed);
         settings.shadow_terminator &= !self.picture.no_shadow_terminator;
+        settings.transparent |= self.picture.transparent;
         let light_samples = self.sampling.light_samples;
         settings.light_samples = light_samples.or(settings.light_samples);
     }

@@ -1,22 +1,27 @@
 //! `halfshade render`: scene to picture.
 
+use std::env;
+use std::f32::consts::TAU;
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use halfshade::camera::Camera;
 use halfshade::film::{ErrorEstimate, Film, Rect, StoppedBy};
 use halfshade::import::{Imported, import};
-use halfshade::math::UVec2;
+use halfshade::math::{DVec3, UVec2};
+use halfshade::output::automatic_exposure;
+use halfshade::output::denoise::{Denoiser, LIBRARY_VARIABLE};
 use halfshade::output::exr::Window;
-use halfshade::prepare::{Prepared, prepare_keeping};
+use halfshade::prepare::{Prepared, PreparedScene, prepare_keeping};
 use halfshade::render::{self, Event, Job, Limits, Significant, render_within, replay};
-use halfshade::scene::{Placed, Scene, Settings};
+use halfshade::scene::{LeftOut, Placed, Scene, Settings};
 use halfshade::stress::stability::Stability;
 
 use super::Failure;
-use super::arguments::SampleId;
+use super::arguments::{Exposure, SampleId};
 use super::console::{Console, print};
 use super::interrupt::Interrupt;
-use super::layers::LayerValues;
+use super::layers::{Kept, LayerValues};
 use super::left_out::LeftOutLine;
 use super::limits::limits;
 use super::memory;
@@ -24,7 +29,7 @@ use super::metadata::metadata;
 use super::options::RenderOptions;
 use super::progress::RenderProgress;
 use super::stats::{Done, Seconds, Stats, StepClock};
-use super::targets::Targets;
+use super::targets::{Targets, numbered};
 
 /// Rays of `--check-leaks`.
 const LEAK_RAYS: u64 = 200_000;
@@ -52,6 +57,7 @@ fn run_on_pool(
     let mut clock = StepClock::start();
     let mut seconds = Seconds::default();
 
+    let denoiser = denoiser(options)?;
     let mut imported = load(options)?;
     let crop = crop(options, &imported.settings)?;
     let deadline = deadline(options, targets, crop, &clock);
@@ -69,50 +75,143 @@ fn run_on_pool(
     } = prepare_keeping(&imported.scene, options.work.bvh, options.work.keep.keep());
     seconds.prepare = clock.step();
     options.console.warn_all(&warnings);
-    let views = options.output.layers.iter().filter_map(|kind| kind.view());
-    let job = Job {
-        camera: scene.camera(camera),
-        scene: &scene,
-        settings,
+    let kept = Kept::of(&options.output, settings, &imported.scene)?;
+    let mut work = Work {
+        options,
+        interrupt,
+        imported: &imported,
+        prepared: &scene,
+        left_out: [imported.left_out.as_slice(), &left_out].concat(),
         crop,
-        layers: views.collect(),
+        limits,
+        kept,
+        denoiser,
+        clock,
+        seconds,
     };
     let Some(targets) = targets else {
-        return replay_one(options, &job);
+        return replay_one(options, &work.job(camera));
     };
+    let Some(count) = options.picture.orbit else {
+        return work.picture(camera, targets, None);
+    };
+    for number in 1..=count {
+        interrupt.rendering_is_ahead();
+        let camera = orbiting(camera, &imported.scene, (number - 1) as f32 / count as f32);
+        work.picture(&camera, &targets.of_number(number), Some(number))?;
+        work.begin_again();
+    }
+    Ok(())
+}
 
-    let mut left_out = [imported.left_out.as_slice(), &left_out].concat();
-    left_out.extend(render::left_out(&job));
-    for entry in &left_out {
-        options
-            .console
-            .detail(format_args!("left out: {}", LeftOutLine(entry)));
+/// What all pictures of a scene have in common, and the time that the next one takes.
+struct Work<'a> {
+    options: &'a RenderOptions,
+    interrupt: &'a Interrupt,
+    imported: &'a Imported,
+    prepared: &'a PreparedScene<'a>,
+    left_out: Vec<LeftOut>,
+    crop: Rect,
+    limits: Limits,
+    kept: Kept,
+    denoiser: Option<Denoiser>,
+    clock: StepClock,
+    seconds: Seconds,
+}
+
+impl Work<'_> {
+    fn job(&self, camera: &Placed<Camera>) -> Job<'_> {
+        Job {
+            scene: self.prepared,
+            camera: self.prepared.camera(camera),
+            settings: &self.imported.settings,
+            crop: self.crop,
+            layers: self.kept.aovs.clone(),
+        }
     }
 
-    memory::check(&job, &options.output.layers)?;
-    let film = watched(&job, &limits, interrupt, options.console);
-    seconds.render = clock.step();
-    let values = LayerValues::of_film(&film, &options.output.layers);
-    let window = Window {
-        picture: settings.size,
-        corner: UVec2::new(crop.x, crop.y),
-        size: crop.size(),
-    };
-    targets.write(window, &values, &metadata(options, settings, &film))?;
-    seconds.output = clock.step();
-    seconds.total = clock.total();
-    let stability = stability(options, &job, &film);
-    let done = Done {
-        film: &film,
-        pixels: values.picture(),
-        triangles: imported.scene.triangle_count(),
-        seed: settings.sampling.seed,
-        seconds,
-        error: film.error(),
-        left_out: &left_out,
-        stability: &stability,
-    };
-    finish(options, targets, &done)
+    /// Renders the picture of `camera`, and writes it to `targets`; `number` is its place in a sequence.
+    fn picture(
+        &mut self,
+        camera: &Placed<Camera>,
+        targets: &Targets,
+        number: Option<u32>,
+    ) -> Result<(), Failure> {
+        let (options, imported) = (self.options, self.imported);
+        let (settings, console) = (&imported.settings, options.console);
+        let job = self.job(camera);
+        let mut left_out = self.left_out.clone();
+        left_out.extend(render::left_out(&job));
+        for entry in &left_out {
+            console.detail(format_args!("left out: {}", LeftOutLine(entry)));
+        }
+        memory::check(&job, &options.output.layers)?;
+        let film = watched(&job, &self.limits, self.interrupt, console);
+        self.seconds.render = self.clock.step();
+        let layers = &options.output.layers;
+        let mut values = LayerValues::of_film(&film, &self.kept, layers, &imported.scene);
+        let mut metadata = metadata(options, settings, &film);
+        if let Some(denoiser) = &self.denoiser {
+            let version = values.denoise(denoiser, &film, &self.kept)?;
+            metadata.push(("denoised", format!("Open Image Denoise {version}")));
+        }
+        let window = Window {
+            picture: settings.size,
+            corner: UVec2::new(self.crop.x, self.crop.y),
+            size: self.crop.size(),
+        };
+        match options.output.exposure {
+            Some(Exposure::Automatic) => {
+                let stops = automatic_exposure(values.picture());
+                console.say(format_args!("note: --exposure {stops} shows the same"));
+                let targets = targets.exposed(stops);
+                targets.write(window, &values, &metadata)?;
+            }
+            _ => targets.write(window, &values, &metadata)?,
+        }
+        self.seconds.output = self.clock.step();
+        self.seconds.total = self.clock.total();
+        let stability = stability(options, &job, &film);
+        let done = Done {
+            film: &film,
+            pixels: values.picture(),
+            triangles: imported.scene.triangle_count(),
+            seed: settings.sampling.seed,
+            seconds: self.seconds,
+            error: film.error(),
+            left_out: &left_out,
+            stability: &stability,
+        };
+        finish(options, targets, number, &done)
+    }
+
+    /// Lets the next picture's time begin.
+    fn begin_again(&mut self) {
+        self.clock = StepClock::start();
+        self.seconds = Seconds::default();
+    }
+}
+
+/// Open Image Denoise, where it is asked for.
+fn denoiser(options: &RenderOptions) -> Result<Option<Denoiser>, Failure> {
+    if !options.output.denoise {
+        return Ok(None);
+    }
+    let place = env::var_os(LIBRARY_VARIABLE).map(PathBuf::from);
+    let found = Denoiser::find(place.as_deref());
+    found.map(Some).map_err(Failure::job)
+}
+
+/// `camera` after a share of the way around the middle of `scene`.
+fn orbiting(camera: &Placed<Camera>, scene: &Scene, share: f32) -> Placed<Camera> {
+    let middle = scene
+        .bounds()
+        .map_or(DVec3::ZERO, |(min, max)| 0.5 * (min + max));
+    let center = (middle - camera.origin).as_vec3();
+    Placed {
+        item: camera.item.turned(center, share * TAU),
+        ..camera.clone()
+    }
 }
 
 /// When the samples have to be there, so that the files are written in time.
@@ -276,10 +375,16 @@ fn say_clamped(console: Console, settings: &Settings, film: &Film) {
 }
 
 /// Writes the stats and says what was done.
-fn finish(options: &RenderOptions, targets: &Targets, done: &Done) -> Result<(), Failure> {
+fn finish(
+    options: &RenderOptions,
+    targets: &Targets,
+    number: Option<u32>,
+    done: &Done,
+) -> Result<(), Failure> {
     let console = options.console;
     if let Some(path) = &options.output.stats {
-        Stats::of(done).write(path)?;
+        let path = number.map_or_else(|| path.clone(), |number| numbered(path, number));
+        Stats::of(done).write(&path)?;
     }
     let rays = done.film.rays;
     console.detail(format_args!(

@@ -11,6 +11,7 @@ use halfshade::output::png::{self, PngBits, PngOptions};
 use halfshade::output::{ImageFormat, OutputError, check_writable};
 
 use super::Failure;
+use super::arguments::Exposure;
 use super::layers::{LayerKind, LayerValues};
 use super::options::{OutputOptions, RenderOptions};
 
@@ -43,10 +44,36 @@ impl Targets {
             } else {
                 PngBits::Eight
             },
-            exposure_ev: output.exposure.unwrap_or(0.0),
+            exposure_ev: match output.exposure {
+                Some(Exposure::Stops(stops)) => stops,
+                // Not known before the picture is there.
+                None | Some(Exposure::Automatic) => 0.0,
+            },
             tone_map: output.tone_map.unwrap_or_default(),
         };
         Ok(Self { images, png })
+    }
+
+    /// The same with another exposure.
+    pub fn exposed(&self, stops: f32) -> Self {
+        Self {
+            images: self.images.clone(),
+            png: PngOptions {
+                exposure_ev: stops,
+                ..self.png
+            },
+        }
+    }
+
+    /// The files of one picture of a sequence.
+    pub fn of_number(&self, number: u32) -> Self {
+        let images = self.images.iter();
+        Self {
+            images: images
+                .map(|(path, format)| (numbered(path, number), *format))
+                .collect(),
+            png: self.png,
+        }
     }
 
     /// Their names.
@@ -62,11 +89,13 @@ impl Targets {
         for (_, format) in &self.images {
             // What fails here fails again, and is told of, when the files are written.
             let _ = match format {
-                ImageFormat::Png => png::encode(io::sink(), REHEARSAL, &picture, self.png),
+                ImageFormat::Png => png::encode(io::sink(), REHEARSAL, &picture, None, self.png),
                 ImageFormat::Exr => {
                     let values = || Values::Colors(&picture);
-                    let names = std::iter::once("").chain(layers.iter().map(|kind| kind.name()));
+                    let count = layers.iter().map(|kind| kind.width()).sum::<usize>() + 1;
+                    let names: Vec<String> = (0..count).map(|i| i.to_string()).collect();
                     let layers: Vec<_> = names
+                        .iter()
                         .map(|name| Layer {
                             name,
                             values: values(),
@@ -88,9 +117,15 @@ impl Targets {
         values: &LayerValues,
         metadata: &[(&str, String)],
     ) -> Result<(), OutputError> {
+        let attributes = values.attributes();
+        let attributes = attributes.iter().map(|(k, v)| (k.as_str(), v.clone()));
+        let metadata: Vec<_> = metadata.iter().cloned().chain(attributes).collect();
         let write = |(path, format): &(PathBuf, ImageFormat)| match format {
-            ImageFormat::Png => png::write(path, window.size, values.picture(), self.png),
-            ImageFormat::Exr => exr::write(path, window, &values.layers(), metadata),
+            ImageFormat::Png => {
+                let (picture, alpha) = (values.picture(), values.alpha());
+                png::write(path, window.size, picture, alpha, self.png)
+            }
+            ImageFormat::Exr => exr::write(path, window, &values.layers(), &metadata),
         };
         let results: Vec<_> = self.images.iter().map(write).collect();
         results.into_iter().collect()
@@ -217,4 +252,15 @@ fn default_output(scene: &Path) -> PathBuf {
     let mut name = name.to_owned();
     name.push(".png");
     PathBuf::from(name)
+}
+
+/// The file of one picture of a sequence: its number stands before the ending.
+pub fn numbered(path: &Path, number: u32) -> PathBuf {
+    let mut name = path.file_stem().unwrap_or_default().to_owned();
+    name.push(format!(".{number:04}"));
+    if let Some(extension) = path.extension() {
+        name.push(".");
+        name.push(extension);
+    }
+    path.with_file_name(name)
 }

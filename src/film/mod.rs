@@ -117,8 +117,12 @@ pub struct Film {
     pub rect: Rect,
     /// Its pixels, row by row.
     pub pixels: Vec<Pixel>,
-    /// Layers that were asked for, in order: per pixel the mean over its samples.
+    /// Layers that were asked for, in order: per pixel the mean over its samples, taken like that of
+    /// their radiance ([`Pixel::mean_of_sums`]).
     pub layers: Vec<Vec<[f32; 3]>>,
+    /// Per pixel the instances of the scene that cover it, by their numbers, and the shares of it that
+    /// they cover; empty where nobody asked.
+    pub objects: Vec<Vec<(u32, f32)>>,
     /// Samples that were dropped since they are not finite.
     pub rejected: u64,
     /// The first of them, in the order of tiles.

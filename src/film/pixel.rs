@@ -88,6 +88,18 @@ impl Pixel {
         Rgb::from(self.value().map(|m| m as f32))
     }
 
+    /// The mean of something else than radiance, of which these are the sums over the samples of each half: as in
+    /// [`Self::value`] both halves weigh the same.
+    pub fn mean_of_sums(&self, sums: [f64; 2]) -> f64 {
+        let [a, b] = self.halves.each_ref().map(|half| half.count as f64);
+        match (a > 0.0, b > 0.0) {
+            (true, true) => 0.5 * (sums[0] / a + sums[1] / b),
+            (true, false) => sums[0] / a,
+            (false, true) => sums[1] / b,
+            (false, false) => 0.0,
+        }
+    }
+
     /// The squared error of its value by channel, as the halves tell it: right on average, though by itself
     /// it has one degree of freedom. 0 where one half is empty.
     pub fn squared_error(&self) -> [f64; 3] {
@@ -136,6 +148,7 @@ mod tests {
             pixel.add_sample(half, Rgb::splat(value));
         }
         assert_eq!(pixel.value(), [2.0; 3]);
+        assert_eq!(pixel.mean_of_sums([1.0, 6.0]), 2.0);
         assert_eq!(pixel.squared_error(), [1.0; 3]);
         assert_eq!(pixel.halves()[1].sample_variance(), [2.0; 3]);
     }

@@ -203,7 +203,7 @@ fn drop_attributes(scene: &mut Scene, needs: Needs) -> Vec<LeftOut> {
 
 /// What is read of the vertices of a surface of `material`.
 fn read_attributes(material: &mut Material, needs: Needs) -> Attributes {
-    let mut uv_sets = 0;
+    let mut uv_sets = usize::from(needs.uv);
     material.retain_textures(|_, texture| {
         uv_sets = uv_sets.max(usize::from(texture.uv_set) + 1);
         true

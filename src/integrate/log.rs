@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::account::{Account, Seen, Sight, Source};
 use crate::color::Rgb;
 use crate::film::{CutOff, RayCounts};
 use crate::math::Ray;
@@ -50,7 +51,7 @@ pub struct RayRecord {
     pub weight: Rgb,
 }
 
-/// Counts rays; on request keeps them.
+/// Counts rays; on request keeps them, and what else the samples tell.
 #[derive(Clone, Debug, Default)]
 pub struct RayLog {
     /// How many of which kind.
@@ -59,6 +60,10 @@ pub struct RayLog {
     pub cut_off: CutOff,
     /// All of them in order, where somebody asked.
     pub records: Option<Vec<RayRecord>>,
+    /// What is told of each of the samples that are traced together; none where nobody asked.
+    pub accounts: Vec<Account>,
+    /// The place of the sample that is told about.
+    sample: usize,
 }
 
 impl RayLog {
@@ -76,6 +81,14 @@ impl RayLog {
         self.cut_off.weight += f64::from(weight.max_channel());
     }
 
+    /// A log that is told what `accounts` are for: one for each sample that is traced at a time.
+    pub fn told(accounts: Vec<Account>) -> Self {
+        Self {
+            accounts,
+            ..Self::default()
+        }
+    }
+
     /// Counts a ray; `record` is asked for where rays are kept.
     pub fn add(&mut self, kind: RayKind, record: impl FnOnce() -> RayRecord) {
         match kind {
@@ -87,6 +100,31 @@ impl RayLog {
         }
         if let Some(records) = &mut self.records {
             records.push(record());
+        }
+    }
+
+    /// What follows is told of the sample at this place among those that are traced together.
+    pub fn turn_to(&mut self, place: usize) {
+        self.sample = place;
+    }
+
+    /// Whether anybody listens to what is told.
+    pub fn is_told(&self) -> bool {
+        !self.accounts.is_empty()
+    }
+
+    /// Tells that a ray from the camera meets `sight`, which covers `share` of it. Told from front to back.
+    pub fn see(&mut self, sight: Sight, share: f32) {
+        if let Some(account) = self.accounts.get_mut(self.sample) {
+            account.seen.push(Seen { sight, share });
+        }
+    }
+
+    /// Tells that `weight * radiance` of the sample was given off by `source` and scattered `events` times
+    /// on its way to the camera. All that is told of a sample adds up to its radiance.
+    pub fn light(&mut self, source: Source, events: u32, weight: Rgb, radiance: Rgb) {
+        if let Some(account) = self.accounts.get_mut(self.sample) {
+            account.add(source, events, weight * radiance);
         }
     }
 }

@@ -1,11 +1,15 @@
 //! Techniques: from a ray to the radiance that comes back along it.
 
+mod account;
+mod aov;
 mod log;
 mod path;
 mod views;
 mod visibility;
 mod whitted;
 
+pub use account::{Account, LightGroups, LightPart, Seen, Sight, Source};
+pub use aov::Aov;
 pub use log::{RayKind, RayLog, RayRecord};
 pub use path::{PathTracer, Weighing};
 pub use views::{FirstSurface, View, ViewKind};
@@ -31,17 +35,20 @@ pub struct CameraSample {
 pub trait Integrator: Sync {
     /// Radiance along `ray`, W/(m² sr), with the random numbers of `sampler`.
     ///
-    /// The rays that are traced for it are counted, and on request recorded, in `log`.
+    /// The rays that are traced for it are counted, and on request recorded, in `log`, which is also told what
+    /// the camera sees and where the light comes from.
     fn radiance(&self, ray: &Ray, sampler: &Sampler, log: &mut RayLog) -> Rgb;
 
     /// [`Self::radiance`] of each of `samples`, appended to `radiances`, with the same bits. Samples of near
     /// places of the film may be quicker together than one by one.
     fn radiances(&self, samples: &[CameraSample], radiances: &mut Vec<Rgb>, log: &mut RayLog) {
-        let all = samples.iter();
-        radiances.extend(all.map(|s| self.radiance(&s.ray, &s.sampler, log)));
+        for (place, sample) in samples.iter().enumerate() {
+            log.turn_to(place);
+            radiances.push(self.radiance(&sample.ray, &sample.sampler, log));
+        }
     }
 
-    /// What [`Self::radiance`] is along every ray that meets nothing.
+    /// What [`Self::radiance`] is along every ray that meets nothing: black where the background is transparent.
     fn background(&self) -> Rgb;
 }
 

@@ -12,7 +12,7 @@ use crate::sampling::Sampler;
 use crate::scene::Settings;
 
 use super::visibility::transmittance;
-use super::{CameraSample, Integrator, RayKind, RayLog, RayRecord, light_samples};
+use super::{CameraSample, Integrator, RayKind, RayLog, RayRecord, Sight, Source, light_samples};
 
 /// Rays that count for less than this in every channel are not followed: what is cut off is at
 /// most this share of what they would have brought back.
@@ -27,8 +27,10 @@ pub struct Whitted<'a> {
     smooths_shadows: bool,
     /// Per light: shadow rays per shading point.
     samples: Vec<u32>,
-    /// Lights that rays can meet.
-    visible: Vec<&'a Light>,
+    /// Lights that rays can meet, with their numbers.
+    visible: Vec<(u32, &'a Light)>,
+    /// Whether the camera sees nothing where it sees the background.
+    is_transparent: bool,
 }
 
 /// A ray that waits to be followed.
@@ -42,10 +44,18 @@ struct Pending {
     vertex: u32,
 }
 
+/// A light whose surface a ray meets.
+struct MetLight {
+    number: u32,
+    /// Where along the ray.
+    t: f32,
+    radiance: Rgb,
+}
+
 /// What is still to be done for some samples.
 #[derive(Default)]
 struct Work {
-    /// The place of the sample that is followed, among all radiances.
+    /// The place of the sample that is followed, among those that are taken together.
     sample: usize,
     /// Its rays that are still to be followed.
     pending: Vec<Pending>,
@@ -59,7 +69,7 @@ struct Work {
 
 /// What a shadow ray is for.
 struct Shadow {
-    /// The place of its sample among all radiances.
+    /// The place of its sample among those that are taken together.
     sample: usize,
     light: u32,
     /// Scattering events before it.
@@ -84,7 +94,11 @@ impl<'a> Whitted<'a> {
             max_depth: settings.max_depth,
             smooths_shadows: settings.shadow_terminator,
             samples: scene.lights.iter().map(samples).collect(),
-            visible: scene.lights.iter().filter(|l| l.is_visible()).collect(),
+            visible: (0..)
+                .zip(&scene.lights)
+                .filter(|(_, light)| light.is_visible())
+                .collect(),
+            is_transparent: settings.transparent,
         }
     }
 
@@ -108,16 +122,32 @@ impl<'a> Whitted<'a> {
         });
         let mut total = Rgb::BLACK;
         let mut weight = from.weight;
+        // What no surface covers of the ray, whatever glass lets through.
+        let mut clear = 1.0;
+        let is_camera = from.kind == RayKind::Camera;
         let mut next = first;
         let mut passed = 0.0;
         loop {
-            if let Some(radiance) = self.light_between(&from.ray, passed, next.as_ref()) {
-                return total + weight * radiance;
+            if let Some(met) = self.light_between(&from.ray, passed, next.as_ref()) {
+                if is_camera {
+                    log.see(Sight::Light { t: met.t }, clear);
+                }
+                log.light(Source::Light(met.number), from.depth, weight, met.radiance);
+                return total + weight * met.radiance;
             }
             let Some(hit) = next else {
-                return total + weight * self.scene.radiance_beyond(&from.ray);
+                if is_camera && self.is_transparent {
+                    weight = weight - Rgb::splat(clear);
+                }
+                let radiance = self.scene.radiance_beyond(&from.ray);
+                log.light(Source::Background, from.depth, weight, radiance);
+                return total + weight * radiance;
             };
             let opacity = self.scene.visibility(&from.ray, &hit);
+            if is_camera && opacity > 0.0 {
+                log.see(Sight::Surface(hit), clear * opacity);
+            }
+            clear *= 1.0 - opacity;
             let mut straight = Rgb::splat(1.0 - opacity);
             if opacity > 0.0 {
                 let surface = self.scene.surface(&from.ray, &hit);
@@ -125,7 +155,7 @@ impl<'a> Whitted<'a> {
                     weight: weight * opacity,
                     ..*from
                 };
-                total += here.weight * self.shade(&surface, &here, sampler, work);
+                total += here.weight * self.shade(&surface, &here, sampler, log, work);
                 straight += opacity * self.scatter(&surface, &here, log, &mut work.pending);
             }
             weight *= straight;
@@ -137,27 +167,44 @@ impl<'a> Whitted<'a> {
         }
     }
 
-    /// Radiance of the nearest light whose surface `ray` meets beyond `passed` and before `hit`.
-    fn light_between(&self, ray: &Ray, passed: f32, hit: Option<&Hit>) -> Option<Rgb> {
+    /// The nearest light whose surface `ray` meets beyond `passed` and before `hit`.
+    fn light_between(&self, ray: &Ray, passed: f32, hit: Option<&Hit>) -> Option<MetLight> {
         let end = hit.map_or(ray.t_max, |h| h.t);
+        let meet = |&(number, light): &(u32, &Light)| {
+            let (t, radiance) = light.emitted(ray)?;
+            Some(MetLight {
+                number,
+                t,
+                radiance,
+            })
+        };
         self.visible
             .iter()
-            .filter_map(|light| light.emitted(ray))
-            .filter(|(t, _)| *t > passed && *t < end)
-            .min_by(|(a, _), (b, _)| a.total_cmp(b))
-            .map(|(_, radiance)| radiance)
+            .filter_map(meet)
+            .filter(|met| met.t > passed && met.t < end)
+            .min_by(|a, b| a.t.total_cmp(&b.t))
     }
 
     /// Emitted and ambient light that leaves `surface` to the viewer; the direct light waits for shadow rays.
-    fn shade(&self, surface: &Surface, from: &Pending, sampler: &Sampler, work: &mut Work) -> Rgb {
+    fn shade(
+        &self,
+        surface: &Surface,
+        from: &Pending,
+        sampler: &Sampler,
+        log: &mut RayLog,
+        work: &mut Work,
+    ) -> Rgb {
         let mut at = surface.interaction;
         if !self.smooths_shadows {
             at.smooth_point = None;
         }
         let view = surface.view();
         let ambient = self.scene.background.ambient * surface.material.occlusion(&surface.lookup);
-        let shining =
-            surface.material.emitted(&surface.lookup) + ambient * surface.bsdf.ambient(&view);
+        let emitted = surface.material.emitted(&surface.lookup);
+        let ambient = ambient * surface.bsdf.ambient(&view);
+        log.light(Source::Surface, from.depth, from.weight, emitted);
+        log.light(Source::Background, from.depth + 1, from.weight, ambient);
+        let shining = emitted + ambient;
         if from.depth >= self.max_depth {
             return shining;
         }
@@ -244,6 +291,13 @@ impl<'a> Whitted<'a> {
                 (false, _) => shadow.value * transmittance(self.scene, ray),
             };
             radiances[shadow.sample] += value;
+            log.turn_to(shadow.sample);
+            log.light(
+                Source::Light(shadow.light),
+                shadow.depth + 1,
+                Rgb::WHITE,
+                value,
+            );
             let kind = RayKind::Shadow(shadow.light);
             log.add(kind, || RayRecord {
                 kind,
@@ -330,8 +384,10 @@ impl Integrator for Whitted<'_> {
         let mut hits = vec![None; rays.len()];
         self.scene.closest_hits(&rays, &mut hits);
         let mut work = Work::default();
-        for (CameraSample { ray, sampler }, hit) in samples.iter().zip(hits) {
-            work.sample = radiances.len();
+        let start = radiances.len();
+        for (place, (CameraSample { ray, sampler }, hit)) in samples.iter().zip(hits).enumerate() {
+            work.sample = place;
+            log.turn_to(place);
             let camera = Pending {
                 kind: RayKind::Camera,
                 ray: *ray,
@@ -346,10 +402,14 @@ impl Integrator for Whitted<'_> {
             }
             radiances.push(total);
         }
-        self.light_up(&mut work, radiances, log);
+        self.light_up(&mut work, &mut radiances[start..], log);
     }
 
     fn background(&self) -> Rgb {
-        self.scene.background.radiance
+        if self.is_transparent {
+            Rgb::BLACK
+        } else {
+            self.scene.background.radiance
+        }
     }
 }

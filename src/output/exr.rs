@@ -5,7 +5,7 @@
 //! precision. Half floats would take half the space, but end at 65504, and their 11 bits are
 //! a relative error of 5e-4, which is more than the errors that these files are compared for.
 
-use std::io::{self, Seek, Write};
+use std::io::{self, BufWriter, Read, Seek, Write};
 use std::path::Path;
 
 use ::exr::meta::attribute::{AttributeValue, Chromaticities, IntegerBounds, Text};
@@ -15,6 +15,7 @@ use ::exr::prelude::{
     WritableImage,
 };
 
+use super::header::sort_attributes;
 use super::{OutputError, write_whole};
 use crate::color::Rgb;
 use crate::math::{UVec2, Vec3};
@@ -70,7 +71,8 @@ pub enum Values<'a> {
 }
 
 /// Writes an EXR file with `layers`; `metadata` are keys and values about the whole picture,
-/// kept as lines of text in the header's attribute [`METADATA_ATTRIBUTE`].
+/// kept as lines of text in the header's attribute [`METADATA_ATTRIBUTE`]. A key with a slash is an attribute by
+/// itself, as Cryptomatte wants it.
 ///
 /// # Errors
 /// Where the file cannot be written.
@@ -80,15 +82,17 @@ pub fn write(
     layers: &[Layer],
     metadata: &[(&str, String)],
 ) -> Result<(), OutputError> {
-    write_whole(path, |file| encode(file, window, layers, metadata))
+    write_whole(path, |file| {
+        encode(file.get_mut(), window, layers, metadata)
+    })
 }
 
-/// The bytes of an EXR file, to any writer; the same bytes for the same arguments.
+/// The bytes of an EXR file, to an empty `file`; the same bytes for the same arguments. As in [`write`].
 ///
 /// # Errors
-/// Where `writer` fails, or the window or a name is not possible in an EXR file.
+/// Where `file` fails, or the window or a name is not possible in an EXR file.
 pub fn encode(
-    writer: impl Write + Seek,
+    mut file: impl Read + Write + Seek,
     window: Window,
     layers: &[Layer],
     metadata: &[(&str, String)],
@@ -114,13 +118,17 @@ pub fn encode(
         AnyChannels::sort(channels.into()),
     );
     let image = Image::new(image_attributes(window, metadata)?, part);
+    let mut writer = BufWriter::new(&mut file);
     // The encoder's own threads: none of them where the caller works on one.
     let written = if rayon::current_num_threads() == 1 {
-        image.write().non_parallel().to_buffered(writer)
+        image.write().non_parallel().to_buffered(&mut writer)
     } else {
-        image.write().to_buffered(writer)
+        image.write().to_buffered(&mut writer)
     };
-    written.map_err(io_error)
+    written.map_err(io_error)?;
+    writer.flush()?;
+    drop(writer);
+    sort_attributes(&mut file)
 }
 
 fn channels<'a>(layer: &Layer<'a>) -> Vec<io::Result<AnyChannel<FlatSamples>>> {
@@ -159,14 +167,16 @@ fn image_attributes(window: Window, metadata: &[(&str, String)]) -> io::Result<I
         blue: Vec2(0.15, 0.06),
         white: Vec2(0.3127, 0.3290),
     });
-    if !metadata.is_empty() {
-        // One attribute, since the encoder writes several in an order that is never the same.
-        let lines: String = metadata
-            .iter()
-            .map(|(key, value)| format!("{key} = {value}\n"))
-            .collect();
-        let value = AttributeValue::Text(text(&lines)?);
-        attributes.other.insert(text(METADATA_ATTRIBUTE)?, value);
+    let (others, lines): (Vec<_>, Vec<_>) = metadata.iter().partition(|(key, _)| key.contains('/'));
+    let lines: String = lines
+        .iter()
+        .map(|(key, value)| format!("{key} = {value}\n"))
+        .collect();
+    let lines = (!lines.is_empty()).then_some((METADATA_ATTRIBUTE, &lines));
+    let others = others.iter().map(|(key, value)| (*key, value));
+    for (name, value) in others.chain(lines) {
+        let value = AttributeValue::Text(text(value)?);
+        attributes.other.insert(text(name)?, value);
     }
     Ok(attributes)
 }

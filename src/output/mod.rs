@@ -3,7 +3,11 @@
 //! What comes in is plain data, row by row from the top, in linear Rec. 709; nothing here knows
 //! of films or scenes. A file appears whole under its name or not at all ([`write_whole`]).
 
+mod cryptomatte;
+pub mod denoise;
+mod exposure;
 pub mod exr;
+mod header;
 pub mod png;
 mod tone_map;
 mod whole_file;
@@ -13,6 +17,8 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+pub use cryptomatte::Cryptomatte;
+pub use exposure::automatic_exposure;
 pub use tone_map::tone_mapped;
 pub use whole_file::{check_writable, discard_unfinished, write_whole};
 

@@ -41,18 +41,23 @@ impl Default for PngOptions {
 
 /// Writes `pixels` (linear radiance, row by row from the top) as an sRGB PNG.
 ///
+/// With `alpha`, the share of each pixel that is covered, `pixels` are what the covered shares add
+/// (premultiplied), as in EXR. The file then has an opacity, and colours of the covered shares alone: PNG's
+/// are not premultiplied.
+///
 /// # Errors
 /// Where the file cannot be written.
 pub fn write(
     path: &Path,
     size: UVec2,
     pixels: &[Rgb],
+    alpha: Option<&[f32]>,
     options: PngOptions,
 ) -> Result<(), OutputError> {
-    write_whole(path, |file| encode(file, size, pixels, options))
+    write_whole(path, |file| encode(file, size, pixels, alpha, options))
 }
 
-/// The bytes of a PNG, to any writer.
+/// The bytes of a PNG, to any writer; as in [`write`].
 ///
 /// # Errors
 /// Where `writer` fails, or `size` has no pixels.
@@ -60,11 +65,15 @@ pub fn encode(
     writer: impl Write,
     size: UVec2,
     pixels: &[Rgb],
+    alpha: Option<&[f32]>,
     options: PngOptions,
 ) -> io::Result<()> {
     debug_assert_eq!(pixels.len(), size.x as usize * size.y as usize);
     let mut encoder = ::png::Encoder::new(writer, size.x, size.y);
-    encoder.set_color(::png::ColorType::Rgb);
+    encoder.set_color(match alpha {
+        None => ::png::ColorType::Rgb,
+        Some(_) => ::png::ColorType::Rgba,
+    });
     encoder.set_depth(match options.bits {
         PngBits::Eight => ::png::BitDepth::Eight,
         PngBits::Sixteen => ::png::BitDepth::Sixteen,
@@ -76,24 +85,45 @@ pub fn encode(
     let mut header = encoder.write_header().map_err(io_error)?;
     let mut rows = header.stream_writer().map_err(io_error)?;
     let mut bytes = Vec::new();
-    for row in pixels.chunks_exact(size.x.max(1) as usize) {
+    let columns = size.x.max(1) as usize;
+    for (y, row) in pixels.chunks_exact(columns).enumerate() {
         bytes.clear();
-        row.iter()
-            .for_each(|&pixel| push(&mut bytes, pixel, options));
+        match alpha {
+            None => row
+                .iter()
+                .for_each(|&pixel| push(&mut bytes, encoded(pixel, options), options.bits)),
+            Some(alpha) => row
+                .iter()
+                .zip(&alpha[y * columns..])
+                .for_each(|(&pixel, &alpha)| push_covered(&mut bytes, pixel, alpha, options)),
+        }
         rows.write_all(&bytes)?;
     }
     rows.finish().map_err(io_error)?;
     header.finish().map_err(io_error)
 }
 
-fn push(bytes: &mut Vec<u8>, pixel: Rgb, options: PngOptions) {
-    for encoded in encoded(pixel, options).channels() {
-        match options.bits {
-            PngBits::Eight => bytes.push((encoded * 255.0).round() as u8),
-            PngBits::Sixteen => {
-                bytes.extend(((encoded * 65535.0).round() as u16).to_be_bytes());
-            }
-        }
+fn push(bytes: &mut Vec<u8>, encoded: Rgb, bits: PngBits) {
+    for channel in encoded.channels() {
+        push_level(bytes, channel, bits);
+    }
+}
+
+fn push_covered(bytes: &mut Vec<u8>, pixel: Rgb, alpha: f32, options: PngOptions) {
+    let straight = if alpha > 0.0 {
+        pixel / alpha
+    } else {
+        Rgb::BLACK
+    };
+    push(bytes, encoded(straight, options), options.bits);
+    push_level(bytes, alpha.clamp(0.0, 1.0), options.bits);
+}
+
+/// A level of what is in `[0, 1]`.
+fn push_level(bytes: &mut Vec<u8>, value: f32, bits: PngBits) {
+    match bits {
+        PngBits::Eight => bytes.push((value * 255.0).round() as u8),
+        PngBits::Sixteen => bytes.extend(((value * 65535.0).round() as u16).to_be_bytes()),
     }
 }
 

@@ -197,6 +197,60 @@ mod tests {
         assert!((shown.g - new_peak * white).abs() < 1e-6);
     }
 
+    /// The specification's mapping backwards, solved for the input.
+    fn neutral_inverse(shown: Rgb) -> Rgb {
+        const F90: f32 = 0.04;
+        const KS: f32 = 0.8 - F90;
+        let new_peak = shown.max_channel();
+        let offset_color = if new_peak <= KS {
+            shown
+        } else {
+            let peak = (1.0 - KS).powi(2) / (1.0 - new_peak) - 1.0 + 2.0 * KS;
+            let g = 1.0 / (0.15 * (peak - new_peak) + 1.0);
+            shown.map(|c| (c - new_peak * (1.0 - g)) * peak / (new_peak * g))
+        };
+        let least = offset_color.r.min(offset_color.g).min(offset_color.b);
+        let offset = if least <= F90 {
+            2.0 * (F90 * least.max(0.0)).sqrt() - least
+        } else {
+            F90
+        };
+        offset_color.map(|c| c + offset)
+    }
+
+    #[test]
+    fn neutral_is_undone_by_the_inverse_of_its_specification() {
+        let levels = [0.01, 0.05, 0.3, 0.79, 0.9, 2.0, 7.0];
+        for color in levels
+            .iter()
+            .flat_map(|&r| levels.map(|g| Rgb::new(r, g, 0.6 * g)))
+        {
+            let back = neutral_inverse(tone_mapped(color, ToneMap::PbrNeutral));
+            for (a, b) in color.channels().into_iter().zip(back.channels()) {
+                assert!((a - b).abs() < 2e-3 * a.max(0.05), "{color:?}: {back:?}");
+            }
+        }
+    }
+
+    /// Entries of the table that is published with AgX (Sobotka 2022, `AgX_Default_Contrast.spi1d`), of 4096.
+    #[test]
+    fn agx_has_the_curve_of_its_published_table() {
+        for (entry, value) in [
+            (0, 0.0),
+            (1, 0.000_014_2),
+            (1446, 0.095_970_1),
+            (1447, 0.096_169_0),
+            (3540, 0.927_017_7),
+            (3544, 0.927_882_5),
+            (4085, 0.999_285_7),
+            (4090, 0.999_644_7),
+            (4095, 1.0),
+        ] {
+            let curve = agx_contrast(entry as f32 / 4095.0);
+            assert!((curve - value).abs() < 3e-6, "{entry}: {curve}, {value}");
+        }
+    }
+
     #[test]
     fn agx_shows_middle_grey_at_half_of_gamma_2_2() {
         let shown = tone_mapped(Rgb::splat(0.18), ToneMap::Agx).g;

@@ -179,6 +179,11 @@ impl<'a> PreparedScene<'a> {
         }
     }
 
+    /// The number of the instance of the scene that `hit` is on.
+    pub fn instance(&self, hit: &Hit) -> u32 {
+        self.locate(hit).instance_number
+    }
+
     pub(super) fn material(&self, at: &Located) -> &'a Material {
         &self.scene.materials[at.instance.material.0 as usize]
     }

@@ -20,7 +20,7 @@ use rayon::prelude::*;
 
 use crate::camera::Camera;
 use crate::film::{Film, Pixel, Rect, StoppedBy};
-use crate::integrate::{Integrator, ViewKind, integrator};
+use crate::integrate::{Account, Aov, Integrator, LightGroups, LightPart, integrator};
 use crate::prepare::PreparedScene;
 use crate::scene::Settings;
 
@@ -43,6 +43,9 @@ const LEAST_GROWTHS: [f64; 4] = [1.02, 1.3, 2.0, 4.0];
 /// The share of the work after which a forecast is made.
 const FORECAST_SHARE: f64 = 0.05;
 
+/// About what the instances that are seen in a pixel take, bytes: most pixels see one or two.
+const OBJECT_BYTES: usize = 256;
+
 /// What is to be rendered.
 #[derive(Debug)]
 pub struct Job<'a> {
@@ -55,7 +58,7 @@ pub struct Job<'a> {
     /// The part of the film that is rendered.
     pub crop: Rect,
     /// Layers beside the picture.
-    pub layers: Vec<ViewKind>,
+    pub layers: Vec<Aov>,
 }
 
 impl Job<'_> {
@@ -63,8 +66,22 @@ impl Job<'_> {
     /// together while they are put together.
     pub fn memory_bytes(&self) -> u64 {
         let pixel = 2 * size_of::<Pixel>() + 2 * size_of::<Halves>();
-        let layer = size_of::<[f64; 3]>() + size_of::<[f32; 3]>();
-        self.crop.area() * (pixel + self.layers.len() * layer) as u64
+        let layer = size_of::<[[f64; 2]; 3]>() + size_of::<[f32; 3]>();
+        let objects = match self.layers.contains(&Aov::Objects) {
+            true => OBJECT_BYTES,
+            false => 0,
+        };
+        self.crop.area() * (pixel + self.layers.len() * layer + objects) as u64
+    }
+
+    /// What takes down what the samples tell, where a layer asks for it.
+    fn account(&self) -> Option<Account> {
+        let is_by_group = |aov: &Aov| matches!(aov, Aov::Light(LightPart::Group(_)));
+        let groups = match self.layers.iter().any(is_by_group) {
+            true => LightGroups::of(self.scene.scene),
+            false => LightGroups::default(),
+        };
+        (!self.layers.is_empty()).then(|| Account::new(groups))
     }
 }
 
@@ -141,6 +158,7 @@ pub fn render_within(
         limits,
         integrator: integrator(job.scene, job.settings),
         foreground: Foreground::of(job),
+        account: job.account(),
         cancel,
         observe,
         pace: Pace::start(),
@@ -159,6 +177,7 @@ struct Run<'a> {
     limits: &'a Limits,
     integrator: Box<dyn Integrator + 'a>,
     foreground: Foreground,
+    account: Option<Account>,
     cancel: &'a AtomicBool,
     observe: &'a (dyn Fn(Event) + Sync),
     pace: Pace,
@@ -239,10 +258,10 @@ impl Run<'_> {
     fn pass(&mut self, deadline: Option<Instant>) -> Option<StoppedBy> {
         let stop = Stop::new(self.cancel, deadline);
         let (job, integrator, observe) = (self.job, self.integrator.as_ref(), self.observe);
-        let foreground = &self.foreground;
+        let (foreground, account) = (&self.foreground, self.account.as_ref());
         let (done, total) = (&self.done, self.total.load(Ordering::Relaxed));
         self.tiles.par_iter_mut().for_each(|tile| {
-            let taken = tile.render(job, integrator, foreground, &stop);
+            let taken = tile.render(job, integrator, foreground, account, &stop);
             let done = done.fetch_add(taken, Ordering::Relaxed) + taken;
             let total = total.max(done);
             observe(Event::Progress(Progress { done, total }));

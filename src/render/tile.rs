@@ -6,7 +6,9 @@ use super::stop::Stop;
 use crate::camera::{CameraRays, film_position};
 use crate::color::Rgb;
 use crate::film::{CutOff, ErrorSums, Film, Pixel, RayCounts, Rect, RejectedSample, StoppedBy};
-use crate::integrate::{CameraSample, FirstSurface, Integrator, RayLog};
+use crate::integrate::{
+    Account, Aov, CameraSample, FirstSurface, Integrator, RayLog, Sight, Source,
+};
 use crate::math::{Ray, UVec2, Vec2, morton_pixel};
 use crate::sampling::Sampler;
 
@@ -19,6 +21,9 @@ const BATCH: usize = 64;
 /// Numbers of samples of the two halves of a pixel.
 pub(super) type Halves = [u32; 2];
 
+/// Per pixel the instances that were seen, and the sums of their shares over the samples of each half.
+type Objects = Vec<Vec<(u32, [f64; 2])>>;
+
 pub(super) struct Tile {
     rect: Rect,
     pub pixels: Vec<Pixel>,
@@ -26,7 +31,9 @@ pub(super) struct Tile {
     pub taken: Vec<Halves>,
     /// How many there are to be.
     pub goal: Vec<Halves>,
-    layers: Vec<Vec<[f64; 3]>>,
+    /// Per layer and pixel: the sums over the samples of each half.
+    layers: Vec<Vec<[[f64; 2]; 3]>>,
+    objects: Objects,
     rejected: u64,
     first_rejected: Option<RejectedSample>,
     pub rays: RayCounts,
@@ -36,14 +43,18 @@ pub(super) struct Tile {
 }
 
 impl Tile {
-    fn new(rect: Rect, layers: usize) -> Self {
+    fn new(rect: Rect, layers: &[Aov]) -> Self {
         let area = rect.area() as usize;
         Self {
             rect,
             pixels: vec![Pixel::default(); area],
             taken: vec![[0; 2]; area],
             goal: vec![[0; 2]; area],
-            layers: vec![vec![[0.0; 3]; area]; layers],
+            layers: vec![vec![[[0.0; 2]; 3]; area]; layers.len()],
+            objects: match layers.contains(&Aov::Objects) {
+                true => vec![Vec::new(); area],
+                false => Vec::new(),
+            },
             rejected: 0,
             first_rejected: None,
             rays: RayCounts::default(),
@@ -65,9 +76,15 @@ impl Tile {
         job: &Job,
         integrator: &dyn Integrator,
         foreground: &Foreground,
+        account: Option<&Account>,
         stop: &Stop,
     ) -> u64 {
-        let mut batch = Batch::new(job, integrator);
+        let mut batch = Batch::new(job, integrator, account);
+        // What a sample tells that sees nothing but the background.
+        let beyond = account.cloned().map(|mut account| {
+            account.add(Source::Background, 0, integrator.background());
+            account
+        });
         let mut done = 0;
         'pixels: for (i, pixel) in self.pixels_by_neighbourhood() {
             let is_beyond = foreground.is_beyond(pixel);
@@ -80,6 +97,9 @@ impl Tile {
                     if is_beyond {
                         batch.log.counts.camera += 1;
                         self.pixels[i].add_sample(half, integrator.background());
+                        if let Some(account) = &beyond {
+                            self.add_layers(job, [i, half], None, account);
+                        }
                         self.taken[i][half] += 1;
                         continue;
                     }
@@ -112,12 +132,8 @@ impl Tile {
     /// Takes the samples of `batch`, and empties it.
     fn take(&mut self, job: &Job, batch: &mut Batch) {
         batch.trace();
-        for ((place, sample), value) in batch
-            .places
-            .iter()
-            .zip(&batch.samples)
-            .zip(&batch.radiances)
-        {
+        let all = (batch.places.iter().zip(&batch.samples)).zip(&batch.radiances);
+        for (number, ((place, sample), value)) in all.enumerate() {
             let Place {
                 i,
                 half,
@@ -125,7 +141,9 @@ impl Tile {
                 pixel,
             } = *place;
             if self.pixels[i].add_sample(half, *value) {
-                self.add_layers(job, i, &sample.ray);
+                if let Some(account) = batch.log.accounts.get(number) {
+                    self.add_layers(job, [i, half], Some(&sample.ray), account);
+                }
             } else {
                 self.rejected += 1;
                 let sample = RejectedSample { pixel, index };
@@ -137,15 +155,33 @@ impl Tile {
         batch.samples.clear();
     }
 
-    /// Adds what the layers show along `ray` to the tile's pixel number `i`.
-    fn add_layers(&mut self, job: &Job, i: usize, ray: &Ray) {
-        if job.layers.is_empty() {
-            return;
+    /// Adds what `account` tells of a sample along `ray` to the layers, at a pixel's number and half; `None`
+    /// for a ray that is known to meet nothing.
+    fn add_layers(
+        &mut self,
+        job: &Job,
+        [i, half]: [usize; 2],
+        ray: Option<&Ray>,
+        account: &Account,
+    ) {
+        let first = account.seen.first().map(|seen| seen.sight);
+        let first = ray.map(|ray| FirstSurface::of(job.scene, ray, first));
+        for (layer, aov) in self.layers.iter_mut().zip(&job.layers) {
+            let value = match *aov {
+                Aov::View(kind) => first.as_ref().map_or([0.0; 3], |first| first.value(kind)),
+                Aov::Coverage => [account.coverage(); 3],
+                Aov::Light(part) => account.light(part).channels(),
+                Aov::Objects => continue,
+            };
+            for (sums, value) in layer[i].iter_mut().zip(value) {
+                sums[half] += f64::from(value);
+            }
         }
-        let first = FirstSurface::along(job.scene, ray);
-        for (layer, &kind) in self.layers.iter_mut().zip(&job.layers) {
-            for (sum, value) in layer[i].iter_mut().zip(first.value(kind)) {
-                *sum += f64::from(value);
+        if let Some(objects) = self.objects.get_mut(i) {
+            for seen in &account.seen {
+                if let Sight::Surface(hit) = &seen.sight {
+                    add_share(objects, job.scene.instance(hit), half, seen.share);
+                }
             }
         }
     }
@@ -183,7 +219,7 @@ struct Place {
 }
 
 impl<'a> Batch<'a> {
-    fn new(job: &'a Job, integrator: &'a dyn Integrator) -> Self {
+    fn new(job: &'a Job, integrator: &'a dyn Integrator, account: Option<&Account>) -> Self {
         Self {
             job,
             integrator,
@@ -191,7 +227,7 @@ impl<'a> Batch<'a> {
             samples: Vec::with_capacity(BATCH),
             places: Vec::with_capacity(BATCH),
             radiances: Vec::with_capacity(BATCH),
-            log: RayLog::default(),
+            log: RayLog::told(account.map_or(Vec::new(), |account| vec![account.clone(); BATCH])),
         }
     }
 
@@ -211,9 +247,20 @@ impl<'a> Batch<'a> {
 
     fn trace(&mut self) {
         self.radiances.clear();
+        let told = self.log.accounts.iter_mut().take(self.samples.len());
+        told.for_each(Account::clear);
         self.integrator
             .radiances(&self.samples, &mut self.radiances, &mut self.log);
     }
+}
+
+fn add_share(objects: &mut Vec<(u32, [f64; 2])>, instance: u32, half: usize, share: f32) {
+    let at = objects.iter().position(|(known, _)| *known == instance);
+    let at = at.unwrap_or_else(|| {
+        objects.push((instance, [0.0; 2]));
+        objects.len() - 1
+    });
+    objects[at].1[half] += f64::from(share);
 }
 
 /// Sample `index` of `pixel`: its ray from the camera, and its other numbers.
@@ -246,7 +293,7 @@ pub(super) fn tiles(job: &Job) -> Vec<Tile> {
                 width: TILE.min(crop.x + crop.width - x),
                 height: TILE.min(crop.y + crop.height - y),
             };
-            Tile::new(rect, job.layers.len())
+            Tile::new(rect, &job.layers)
         })
         .collect()
 }
@@ -268,6 +315,10 @@ pub(super) fn assemble(job: &Job, tiles: &[Tile], stopped_by: StoppedBy) -> Film
         rect: crop,
         pixels: vec![Pixel::default(); area],
         layers: vec![vec![[0.0; 3]; area]; job.layers.len()],
+        objects: match job.layers.contains(&Aov::Objects) {
+            true => vec![Vec::new(); area],
+            false => Vec::new(),
+        },
         rejected: 0,
         first_rejected: None,
         rays: RayCounts::default(),
@@ -277,10 +328,14 @@ pub(super) fn assemble(job: &Job, tiles: &[Tile], stopped_by: StoppedBy) -> Film
     for tile in tiles {
         for (i, pixel) in tile.rect.pixels().enumerate() {
             let to = ((pixel.y - crop.y) * crop.width + pixel.x - crop.x) as usize;
-            film.pixels[to] = tile.pixels[i];
-            let taken = tile.pixels[i].count().max(1) as f64;
+            let pixel = &tile.pixels[i];
+            film.pixels[to] = *pixel;
+            let mean = |sums: [f64; 2]| pixel.mean_of_sums(sums) as f32;
             for (layer, from) in film.layers.iter_mut().zip(&tile.layers) {
-                layer[to] = from[i].map(|sum| (sum / taken) as f32);
+                layer[to] = from[i].map(mean);
+            }
+            if let Some(seen) = tile.objects.get(i) {
+                film.objects[to] = seen.iter().map(|(id, sums)| (*id, mean(*sums))).collect();
             }
         }
         film.rejected += tile.rejected;

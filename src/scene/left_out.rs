@@ -15,6 +15,8 @@ pub struct Needs {
     pub albedo: bool,
     /// How much ambient light comes to them.
     pub ambient: bool,
+    /// Their first texture coordinates, whatever textures there are.
+    pub uv: bool,
 }
 
 impl Needs {
@@ -27,6 +29,7 @@ impl Needs {
                 normals: true,
                 albedo: true,
                 ambient: integrator == IntegratorKind::Whitted,
+                uv: false,
             },
             IntegratorKind::Normal => Self {
                 normals: true,
@@ -47,6 +50,7 @@ impl Needs {
             normals: self.normals || other.normals,
             albedo: self.albedo || other.albedo,
             ambient: self.ambient || other.ambient,
+            uv: self.uv || other.uv,
         }
     }
 }

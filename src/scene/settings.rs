@@ -111,6 +111,8 @@ pub struct Settings {
     /// The most radiance in any channel that light brings which was scattered more than once (`path`);
     /// `None` leaves it as it is.
     pub clamp: Option<f32>,
+    /// Whether the camera sees nothing where it sees the background: the picture is what is before it.
+    pub transparent: bool,
 }
 
 impl Default for Settings {
@@ -123,6 +125,7 @@ impl Default for Settings {
             shadow_terminator: true,
             light_samples: None,
             clamp: None,
+            transparent: false,
         }
     }
 }

@@ -41,6 +41,7 @@ fn folder() -> TempDir {
         &file("quarter.png"),
         SIZE,
         &plain(0.25),
+        None,
         PngOptions::default(),
     )
     .unwrap();
@@ -49,6 +50,7 @@ fn folder() -> TempDir {
         &file("small.png"),
         small,
         &plain(0.5)[..20],
+        None,
         PngOptions::default(),
     )
     .unwrap();

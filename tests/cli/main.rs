@@ -8,6 +8,7 @@ mod help;
 #[cfg(unix)]
 mod interrupt;
 mod limits;
+mod picture;
 mod terminal;
 mod verdict;
 

@@ -35,7 +35,7 @@ const ASKS: &[Ask] = &[
     },
     Ask {
         integrator: "normal",
-        layers: &[ViewKind::Albedo, ViewKind::Depth],
+        layers: &[ViewKind::Albedo, ViewKind::Depth, ViewKind::Uv],
     },
 ];
 

@@ -11,7 +11,7 @@ use std::sync::atomic::AtomicBool;
 use halfshade::bvh::Builder;
 use halfshade::film::Rect;
 use halfshade::import::{SceneOptions, import};
-use halfshade::integrate::ViewKind;
+use halfshade::integrate::{Aov, ViewKind};
 use halfshade::prepare::prepare_keeping;
 use halfshade::render::{self, Job, render};
 use halfshade::scene::{Keep, LeftOut, Needs};
@@ -53,7 +53,7 @@ fn picture(path: &Path, ask: &Ask, keep: Keep) -> (Bits, Vec<LeftOut>) {
         camera: scene.camera(&imported.scene.cameras[0]),
         settings: &imported.settings,
         crop: Rect::full(imported.settings.size),
-        layers: ask.layers.to_vec(),
+        layers: ask.layers.iter().map(|&view| Aov::View(view)).collect(),
     };
     let film = render(&job, &AtomicBool::new(false), &|_| {});
     let bits = |values: &[f32; 3]| values.map(f32::to_bits);

@@ -130,7 +130,7 @@ fn png_is_decoded_from_srgb() {
             bits,
             ..PngOptions::default()
         };
-        png_file::write(&path, SIZE, &original.pixels, options).unwrap();
+        png_file::write(&path, SIZE, &original.pixels, None, options).unwrap();
         let back = read(&path);
         assert_eq!(back.size, SIZE);
         for (a, b) in back.pixels.iter().zip(&original.pixels) {
@@ -195,7 +195,7 @@ fn what_is_no_picture_is_an_error_that_names_the_file() {
 fn damaged_files_are_errors() {
     let (_folder, path) = folder();
     let original = picture(SIZE, |x, y, c| (x * y + c) as f32 / 40.0);
-    png_file::write(&path, SIZE, &original.pixels, PngOptions::default()).unwrap();
+    png_file::write(&path, SIZE, &original.pixels, None, PngOptions::default()).unwrap();
     let png = fs::read(&path).unwrap();
     let layer = OurLayer {
         name: "",
@@ -225,7 +225,14 @@ fn damaged_files_are_errors() {
 #[test]
 fn a_small_file_cannot_claim_more_pixels_than_a_picture_has() {
     let (_folder, path) = folder();
-    png_file::write(&path, UVec2::ONE, &[Rgb::WHITE], PngOptions::default()).unwrap();
+    png_file::write(
+        &path,
+        UVec2::ONE,
+        &[Rgb::WHITE],
+        None,
+        PngOptions::default(),
+    )
+    .unwrap();
     let mut bytes = fs::read(&path).unwrap();
     bytes[16..24].copy_from_slice(&[0, 1, 0, 0, 0, 1, 0, 0]);
     let mut checksum = crc32(&bytes[12..29]).to_be_bytes();

@@ -34,6 +34,7 @@ const KINDS: &[(&str, KindOfLight)] = &[
         (
             &[
                 "kind",
+                "name",
                 "position",
                 "intensity",
                 "radius",
@@ -48,6 +49,7 @@ const KINDS: &[(&str, KindOfLight)] = &[
         (
             &[
                 "kind",
+                "name",
                 "position",
                 "direction",
                 "intensity",
@@ -63,7 +65,14 @@ const KINDS: &[(&str, KindOfLight)] = &[
     (
         "distant",
         (
-            &["kind", "direction", "irradiance", "angle", "samples"],
+            &[
+                "kind",
+                "name",
+                "direction",
+                "irradiance",
+                "angle",
+                "samples",
+            ],
             distant,
         ),
     ),
@@ -71,7 +80,7 @@ const KINDS: &[(&str, KindOfLight)] = &[
         "disk",
         (
             &[
-                "kind", "position", "normal", "radius", "radiance", "samples", "visible",
+                "kind", "name", "position", "normal", "radius", "radiance", "samples", "visible",
             ],
             disk,
         ),
@@ -80,7 +89,7 @@ const KINDS: &[(&str, KindOfLight)] = &[
         "rectangle",
         (
             &[
-                "kind", "position", "edge_u", "edge_v", "radiance", "samples", "visible",
+                "kind", "name", "position", "edge_u", "edge_v", "radiance", "samples", "visible",
             ],
             rectangle,
         ),
@@ -89,7 +98,7 @@ const KINDS: &[(&str, KindOfLight)] = &[
         "sphere",
         (
             &[
-                "kind", "position", "radius", "radiance", "samples", "visible",
+                "kind", "name", "position", "radius", "radiance", "samples", "visible",
             ],
             sphere,
         ),
@@ -106,7 +115,10 @@ pub fn read(source: &Source, node: &Node) -> Result<Placed<Light>, ImportError> 
     })?;
     let (name, (keys, reader)) = kind.one_of(KINDS, |(name, _)| name)?;
     let heading = format!("{HEADING} of kind \"{name}\"");
-    reader(&Section::new(source, node, heading, keys)?)
+    let section = Section::new(source, node, heading, keys)?;
+    let mut light = reader(&section)?;
+    light.name = (section.get("name", |v| v.string().map(str::to_owned))?).unwrap_or_default();
+    Ok(light)
 }
 
 /// A distant light; `direction` has a length above 0, `angle` is in degrees.

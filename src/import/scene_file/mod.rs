@@ -29,6 +29,7 @@
 //! | key | range | default | |
 //! |---|---|---|---|
 //! | `size` | `[width, height]`, 1 to 65,536 each and 2^28 in all | `[1280, 720]` | pixels |
+//! | `transparent` | true, false | false | pictures have an opacity, and the background is seen by nothing but mirrors and glass |
 //!
 //! # `[sampling]`
 //!
@@ -111,7 +112,8 @@
 //!
 //! | kind | key | range | default | |
 //! |---|---|---|---|---|
-//! | all | `samples` | 1 to 2^24 | 1 | shadow rays per shading point |
+//! | all | `name` | text | its number | of its layer; lights of one name share it |
+//! | | `samples` | 1 to 2^24 | 1 | shadow rays per shading point |
 //! | point, spot | `position` | vector | | |
 //! | | `intensity` | colour ≥ 0 | | radiant intensity, W/sr |
 //! | | `radius` | metres ≥ 0 | 0 | of the disk that shadow rays aim at; 0 is a hard shadow |

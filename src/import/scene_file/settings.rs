@@ -14,8 +14,11 @@ use crate::scene::{IntegratorKind, MAX_DEPTH, MAX_PIXELS, MAX_SAMPLES, MAX_SIDE,
 pub fn read(root: &Section) -> Result<Settings, ImportError> {
     let mut settings = Settings::default();
     if let Some(value) = root.value("film") {
-        let section = Section::new(root.source, value.node, "[film]", &["size"])?;
+        let section = Section::new(root.source, value.node, "[film]", &["size", "transparent"])?;
         settings.size = section.get("size", size)?.unwrap_or(settings.size);
+        settings.transparent = section
+            .get("transparent", |v| v.boolean())?
+            .unwrap_or(settings.transparent);
     }
     if let Some(value) = root.value("sampling") {
         settings.sampling = sampling(value)?;

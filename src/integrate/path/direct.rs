@@ -16,7 +16,7 @@ impl PathTracer<'_> {
         self.samples.get(light as usize).copied().unwrap_or(1)
     }
 
-    /// Direct light at `surface`, what of it leaves along the walk.
+    /// Direct light at `surface`, what of it leaves along the walk; `each` hears of the lights that it comes from.
     pub(super) fn direct(
         &self,
         surface: &Surface,
@@ -24,6 +24,7 @@ impl PathTracer<'_> {
         place: &Place,
         sampler: &Sampler,
         log: &mut RayLog,
+        mut each: impl FnMut(u32, Rgb),
     ) -> Rgb {
         if let Some(all) = self.lights.all_from(place) {
             let mut total = Rgb::BLACK;
@@ -32,7 +33,10 @@ impl PathTracer<'_> {
                 for j in 0..count {
                     let u = sampler.light(walk.vertex, order, j, count);
                     if let Some(incident) = self.lights.sample(light, place.receiver.point, u) {
-                        total += self.gathered(surface, walk, light, &incident, count.into(), log);
+                        let value =
+                            self.gathered(surface, walk, light, &incident, count.into(), log);
+                        each(light, value);
+                        total += value;
                     }
                 }
             }
@@ -44,7 +48,9 @@ impl PathTracer<'_> {
         };
         let u = sampler.light(walk.vertex, 0, 0, 1);
         (self.lights.sample(light, place.receiver.point, u)).map_or(Rgb::BLACK, |incident| {
-            self.gathered(surface, walk, light, &incident, probability, log)
+            let value = self.gathered(surface, walk, light, &incident, probability, log);
+            each(light, value);
+            value
         })
     }
 

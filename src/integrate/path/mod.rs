@@ -41,6 +41,8 @@ pub struct PathTracer<'a> {
     surfaces: Vec<u32>,
     can_meet_light: bool,
     weighing: Weighing,
+    /// Whether the camera sees nothing where it sees the background.
+    is_transparent: bool,
 }
 
 impl<'a> PathTracer<'a> {
@@ -63,6 +65,7 @@ impl<'a> PathTracer<'a> {
             can_meet_light: lights.can_be_met(),
             lights,
             weighing: Weighing::default(),
+            is_transparent: settings.transparent,
         }
     }
 
@@ -151,6 +154,7 @@ impl Integrator for PathTracer<'_> {
             departure: None,
             is_viewing: true,
             absorption: None,
+            is_clear: true,
             passed: None,
         };
         while let End::Surface(surface) = self.advance(&mut walk, sampler, log, &mut total) {
@@ -170,8 +174,17 @@ impl Integrator for PathTracer<'_> {
                 },
                 is_first: walk.scattered == 0,
             };
-            let direct = self.direct(&surface, &walk, &place, sampler, log);
-            self.add(&mut total, &walk, direct, walk.scattered + 1, log);
+            let is_told = log.is_told();
+            let mut parts = Vec::new();
+            let direct = self.direct(&surface, &walk, &place, sampler, log, |light, value| {
+                if is_told {
+                    parts.push((light, value));
+                }
+            });
+            let kept = self.add(&mut total, &walk, direct, walk.scattered + 1, log);
+            for (light, value) in parts {
+                log.light(self.source_of(light), walk.scattered + 1, kept, value);
+            }
             if !self.scatter(&surface, &mut walk, place, sampler) {
                 break;
             }
@@ -180,6 +193,10 @@ impl Integrator for PathTracer<'_> {
     }
 
     fn background(&self) -> Rgb {
-        self.scene.background.radiance
+        if self.is_transparent {
+            Rgb::BLACK
+        } else {
+            self.scene.background.radiance
+        }
     }
 }

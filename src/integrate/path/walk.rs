@@ -1,10 +1,12 @@
 //! The way of a path from one surface that scatters it to the next, and the light that it meets there.
 
+use std::cmp::Ordering;
+
 use super::PathTracer;
 use super::lights::Place;
 use crate::bvh::Hit;
 use crate::color::Rgb;
-use crate::integrate::{RayKind, RayLog, RayRecord};
+use crate::integrate::{RayKind, RayLog, RayRecord, Sight, Source};
 use crate::math::{Ray, UnitVec3};
 use crate::prepare::{Surface, TriangleId};
 use crate::sampling::Sampler;
@@ -25,6 +27,8 @@ pub(super) struct Walk {
     pub is_viewing: bool,
     /// What the body that it is in takes from it, per metre.
     pub absorption: Option<Rgb>,
+    /// Whether nothing is between it and the camera, not even glass.
+    pub is_clear: bool,
     /// How far along the ray it has come.
     pub passed: Option<Hit>,
 }
@@ -65,24 +69,56 @@ impl<'a> PathTracer<'a> {
                     weight: walk.throughput,
                 });
             }
-            let (radiance, is_end) = self.lights_before(walk, hit.as_ref());
-            self.add(total, walk, radiance, walk.scattered, log);
-            if is_end {
+            let mut radiance = Rgb::BLACK;
+            let end = self.lights_before(walk, hit.as_ref(), |_, light| radiance += light);
+            let kept = self.add(total, walk, radiance, walk.scattered, log);
+            if log.is_told() && !radiance.is_black() {
+                self.lights_before(walk, hit.as_ref(), |number, light| {
+                    log.light(self.source_of(number), walk.scattered, kept, light);
+                });
+            }
+            if let Some(t) = end {
+                self.see(walk, Sight::Light { t }, log);
                 return End::Nothing;
             }
             let Some(hit) = hit else {
                 let through = self.through_body(walk, f32::INFINITY);
-                let radiance = through * self.beyond(walk);
-                self.add(total, walk, radiance, walk.scattered, log);
+                let mut radiance = Rgb::BLACK;
+                self.beyond(walk, |_, light| radiance += light);
+                let kept = self.add(total, walk, through * radiance, walk.scattered, log);
+                if log.is_told() && !radiance.is_black() {
+                    self.beyond(walk, |source, light| {
+                        log.light(source, walk.scattered, kept, through * light);
+                    });
+                }
                 return End::Nothing;
             };
             walk.throughput = walk.throughput * self.through_body(walk, hit.t);
             walk.passed = Some(hit);
             if let Some(surface) = self.met(walk, &hit, sampler) {
+                self.see(walk, Sight::Surface(hit), log);
                 let radiance = self.emitted(walk, &surface, &hit);
-                self.add(total, walk, radiance, walk.scattered, log);
+                let kept = self.add(total, walk, radiance, walk.scattered, log);
+                log.light(Source::Surface, walk.scattered, kept, radiance);
                 return End::Surface(surface);
             }
+        }
+    }
+
+    /// What the camera sees is told once: it covers all that is behind it.
+    fn see(&self, walk: &mut Walk, sight: Sight, log: &mut RayLog) {
+        if walk.is_clear {
+            log.see(sight, 1.0);
+            walk.is_clear = false;
+        }
+    }
+
+    /// What the light with this number is.
+    pub(super) fn source_of(&self, light: u32) -> Source {
+        match (light as usize).cmp(&self.scene.lights.len()) {
+            Ordering::Less => Source::Light(light),
+            Ordering::Equal => Source::Background,
+            Ordering::Greater => Source::Surface,
         }
     }
 
@@ -113,7 +149,7 @@ impl<'a> PathTracer<'a> {
         through(absorption, self.scene.world_distance(way))
     }
 
-    /// Adds light that was scattered `scattered` times, what is left of it.
+    /// Adds light that was scattered `scattered` times, what is left of it; returns what it was counted for.
     pub(super) fn add(
         &self,
         total: &mut Rgb,
@@ -121,24 +157,31 @@ impl<'a> PathTracer<'a> {
         radiance: Rgb,
         scattered: u32,
         log: &mut RayLog,
-    ) {
+    ) -> Rgb {
         let value = walk.throughput * radiance;
         let most = value.max_channel();
         if scattered < 2 || most <= self.clamp || !value.is_finite() {
             *total += value;
-            return;
+            return walk.throughput;
         }
-        let kept = value * (self.clamp / most);
+        let share = self.clamp / most;
+        let kept = value * share;
         log.counts.clamped += f64::from((value - kept).luminance());
         *total += kept;
+        walk.throughput * share
     }
 
-    /// Light of the scene's lights whose surfaces the ray meets before `hit`, and whether it ends
-    /// at one of them.
+    /// Gives `add` the number and the light of each of the scene's lights whose surfaces the ray meets before
+    /// `hit`; returns where it ends, if at one of them.
     ///
     /// A camera, and its image in a mirror, sees lights as things that hide what is behind them. For rays
     /// that are weighed against shadow rays lights hide nothing, as they do for those.
-    fn lights_before(&self, walk: &Walk, hit: Option<&Hit>) -> (Rgb, bool) {
+    fn lights_before(
+        &self,
+        walk: &Walk,
+        hit: Option<&Hit>,
+        mut add: impl FnMut(u32, Rgb),
+    ) -> Option<f32> {
         let start = walk.passed.map_or(0.0, |h| h.t);
         let end = hit.map_or(walk.ray.t_max, |h| h.t);
         let met = self.surfaces.iter().filter_map(|&number| {
@@ -146,43 +189,45 @@ impl<'a> PathTracer<'a> {
             let (t, radiance) = light.met(&walk.ray)?;
             (t > start && t < end).then_some((number, light.is_visible(), t, radiance))
         });
-        let mut total = Rgb::BLACK;
         if let Some(departure) = &walk.departure {
             for (number, _, t, radiance) in met {
                 let weight = self.weight(departure, number, &walk.ray);
-                total += radiance * weight * self.through_body(walk, t);
+                add(number, radiance * weight * self.through_body(walk, t));
             }
-            return (total, false);
+            return None;
         }
         let last = (met.clone())
             .filter(|(_, is_visible, ..)| *is_visible)
             .min_by(|(_, _, a, _), (_, _, b, _)| a.total_cmp(b));
-        let end = last.map_or(f32::INFINITY, |(_, _, t, _)| t);
-        for (_, is_visible, t, radiance) in met {
+        let last = last.map(|(_, _, t, _)| t);
+        let end = last.unwrap_or(f32::INFINITY);
+        for (number, is_visible, t, radiance) in met {
             if t == end && is_visible || walk.scattered > 0 && !is_visible && t < end {
-                total += radiance * self.through_body(walk, t);
+                add(number, radiance * self.through_body(walk, t));
             }
         }
-        (total, last.is_some())
+        last
     }
 
-    /// Light from beyond the scene.
-    fn beyond(&self, walk: &Walk) -> Rgb {
-        let mut total = self.scene.background.radiance;
+    /// Gives `add` what comes from beyond the scene, and where from.
+    fn beyond(&self, walk: &Walk, mut add: impl FnMut(Source, Rgb)) {
+        if walk.is_clear && self.is_transparent {
+            return;
+        }
         let Some(wi) = UnitVec3::normalize(walk.ray.direction) else {
-            return total;
+            return add(Source::Background, self.scene.background.radiance);
         };
         if walk.scattered == 0 {
-            return self.scene.radiance_beyond(&walk.ray);
+            return add(Source::Background, self.scene.radiance_beyond(&walk.ray));
         }
+        add(Source::Background, self.scene.background.radiance);
         for (light, radiance) in self.lights.beyond(wi) {
             if !radiance.is_black() {
                 let weight =
                     (walk.departure.as_ref()).map_or(1.0, |d| self.weight(d, light, &walk.ray));
-                total += radiance * weight;
+                add(self.source_of(light), radiance * weight);
             }
         }
-        total
     }
 
     /// Light that `surface` gives off along the walk.

@@ -36,7 +36,7 @@ impl Shown {
     pub fn new(label: &str, picture: &Picture) -> std::io::Result<Self> {
         let mut bytes = Vec::new();
         let options = PngOptions::default();
-        png::encode(&mut bytes, picture.size, &picture.pixels, options)?;
+        png::encode(&mut bytes, picture.size, &picture.pixels, None, options)?;
         Ok(Self {
             label: label.to_owned(),
             source: format!("data:image/png;base64,{}", STANDARD.encode(bytes)),
