@@ -171,7 +171,7 @@ impl Work<'_> {
         }
         self.seconds.output = self.clock.step();
         self.seconds.total = self.clock.total();
-        let stability = stability(options, &job, &film);
+        let stability = stability(options, self.prepared, &film);
         let done = Done {
             film: &film,
             pixels: values.picture(),
@@ -341,9 +341,9 @@ fn announce_samples(job: &Job, limits: &Limits, console: Console) {
 }
 
 /// What the render says about its own numbers.
-fn stability(options: &RenderOptions, job: &Job, film: &Film) -> Stability {
-    let leaks = options.work.check_leaks.then(|| job.scene.leaks(LEAK_RAYS));
-    Stability::of(job.scene, film, leaks, &command())
+fn stability(options: &RenderOptions, scene: &PreparedScene, film: &Film) -> Stability {
+    let leaks = options.work.check_leaks.then(|| scene.leaks(LEAK_RAYS));
+    Stability::of(scene, film, leaks, &command())
 }
 
 /// The command that was given, as a shell reads it.
