@@ -59,6 +59,10 @@ pub enum Wrap {
 }
 
 /// What lies between the centres of pixels.
+///
+/// There are no smaller copies of images for what is far away (mipmaps): a pixel's samples are
+/// spread over what it sees of the texture, and their mean is the filter. That has no bias; a mipmap
+/// blurs normals and roughness, which do not average. Files' minifying filters are not read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Filter {
     /// The nearest pixel.

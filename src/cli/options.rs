@@ -66,6 +66,9 @@ pub struct SceneArguments {
     /// A picture of the surroundings (.exr, .hdr), in place of the scene's; in path it is light
     #[arg(long, value_name = "FILE")]
     pub environment: Option<PathBuf>,
+    /// Show the materials of this variant, in models that have several
+    #[arg(long, value_name = "NAME")]
+    pub variant: Option<String>,
     /// Refuse files that require an extension that is not known
     #[arg(long)]
     pub strict: bool,
@@ -237,6 +240,7 @@ impl SceneArguments {
         }
         SceneOptions {
             is_strict: self.strict,
+            variant: self.variant.clone(),
             overrides,
             ..SceneOptions::default()
         }

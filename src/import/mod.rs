@@ -52,11 +52,13 @@ struct Model {
 
 /// How to import.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct ImportOptions {
+pub struct ImportOptions<'a> {
     /// Whether a required extension that we lack is an error.
     pub is_strict: bool,
     /// Whether meshes are read that nothing uses in the scene that is shown.
     pub reads_unused_meshes: bool,
+    /// The variant of its materials that is shown; `None` for the default one.
+    pub variant: Option<&'a str>,
 }
 
 /// Why a file could not be imported: which file, where in it, what is wrong.

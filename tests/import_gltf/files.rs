@@ -143,13 +143,15 @@ fn a_file_cut_short_anywhere_is_an_error() {
 #[test]
 fn required_extensions_that_we_lack_are_warnings_or_in_strict_mode_errors() {
     let mut doc = Doc::triangle();
-    doc.json["extensionsRequired"] = json!(["KHR_materials_sheen", "KHR_texture_transform"]);
-    doc.json["extensionsUsed"] = json!(["KHR_materials_sheen", "VENDOR_new", "KHR_xmp"]);
+    doc.json["extensionsRequired"] =
+        json!(["KHR_materials_volume_scatter", "KHR_texture_transform"]);
+    doc.json["extensionsUsed"] = json!(["KHR_materials_volume_scatter", "VENDOR_new", "KHR_xmp"]);
     let imported = doc.import().unwrap();
     let warnings: Vec<_> = imported.warnings.iter().collect();
     assert_eq!(warnings.len(), 2);
     assert_eq!(warnings[0].code, WarningCode::RequiredExtension);
-    let expected = "KHR_materials_sheen is required and not supported: cloth lacks its sheen";
+    let expected =
+        "KHR_materials_volume_scatter is required and not supported: volumes do not scatter light";
     assert_eq!(warnings[0].message, expected);
     assert_eq!(warnings[1].code, WarningCode::IgnoredExtension);
     let expected = "VENDOR_new is not supported: what it adds is left out";
@@ -165,7 +167,7 @@ fn required_extensions_that_we_lack_are_warnings_or_in_strict_mode_errors() {
     assert!(
         error
             .to_string()
-            .ends_with("cat.glb: KHR_materials_sheen is not supported")
+            .ends_with("cat.glb: KHR_materials_volume_scatter is not supported")
     );
 }
 

@@ -9,6 +9,7 @@ mod damage;
 mod deformation;
 mod files;
 mod hierarchy;
+mod layers;
 mod lights_and_cameras;
 mod materials;
 mod models;

@@ -3,7 +3,7 @@
 use std::io::Cursor;
 
 use halfshade::color::Rgb;
-use halfshade::import::{ImportOptions, WarningCode, import_model};
+use halfshade::import::WarningCode;
 use halfshade::material::{AlphaMode, Material, MetallicRoughness, Surface};
 use halfshade::math::Vec2;
 use halfshade::scene::Scene;
@@ -22,7 +22,7 @@ fn encoded(pixel: [u8; 4], format: ImageFormat) -> Vec<u8> {
 }
 
 /// A triangle of one material, with `textures` textures of one image each.
-fn with_material(material: Value, textures: usize) -> Doc {
+pub fn with_material(material: Value, textures: usize) -> Doc {
     let mut doc = Doc::triangle();
     doc.push("materials", material);
     doc.primitive()["material"] = json!(0);
@@ -37,24 +37,24 @@ fn with_material(material: Value, textures: usize) -> Doc {
     doc
 }
 
-fn scene(doc: &Doc) -> Scene {
+pub fn scene(doc: &Doc) -> Scene {
     let imported = doc.import().unwrap();
     assert!(imported.warnings.is_empty(), "{:?}", imported.warnings);
     imported.scene
 }
 
-fn material(entry: Value, textures: usize) -> Material {
+pub fn material(entry: Value, textures: usize) -> Material {
     scene(&with_material(entry, textures)).materials.remove(0)
 }
 
-fn surface(material: &Material) -> &MetallicRoughness {
+pub fn surface(material: &Material) -> &MetallicRoughness {
     match &material.surface {
         Surface::MetallicRoughness(surface) => surface,
         other => panic!("{other:?}"),
     }
 }
 
-fn texture_index(texture: Option<TextureRef>) -> u32 {
+pub fn texture_index(texture: Option<TextureRef>) -> u32 {
     texture.unwrap().texture.0
 }
 
@@ -146,56 +146,6 @@ fn every_value_of_the_extensions_is_kept() {
     assert_eq!(texture_index(surface.thickness.texture), 3);
     assert_eq!(surface.attenuation_distance, 7.0);
     assert_eq!(surface.attenuation_color, Rgb::new(0.9, 0.8, 0.7));
-}
-
-#[test]
-fn light_through_volumes_and_rough_surfaces_is_told_to_look_clear() {
-    let glass = |roughness: f32, color: [f32; 3]| {
-        let entry = json!({
-            "name": "glass",
-            "pbrMetallicRoughness": { "metallicFactor": 0, "roughnessFactor": roughness },
-            "extensions": {
-                "KHR_materials_transmission": { "transmissionFactor": 1 },
-                "KHR_materials_volume": {
-                    "thicknessFactor": 1, "attenuationDistance": 2, "attenuationColor": color,
-                },
-            },
-        });
-        with_material(entry, 0)
-    };
-    let rough = (
-        glass(0.5, [1.0; 3]),
-        "KHR_materials_transmission",
-        "light through a rough surface (KHR_materials_transmission) is not supported",
-    );
-    let colored = (
-        glass(0.0, [0.9, 0.5, 0.1]),
-        "KHR_materials_volume",
-        "the colour of a volume (KHR_materials_volume) is not supported",
-    );
-    assert!(glass(0.0, [1.0; 3]).import().unwrap().warnings.is_empty());
-    let strict = ImportOptions {
-        is_strict: true,
-        ..ImportOptions::default()
-    };
-    for (mut doc, extension, expected) in [rough, colored] {
-        let told: Vec<_> = doc.import().unwrap().warnings.iter().collect();
-        assert_eq!(told.len(), 1, "{told:?}");
-        assert_eq!(told[0].code, WarningCode::Approximated);
-        let message = format!("material \"glass\": {expected}: it looks clear");
-        assert_eq!(told[0].message, message);
-
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("glass.glb");
-        std::fs::write(&path, doc.glb()).unwrap();
-        assert!(import_model(&path, strict).is_ok());
-        doc.json["extensionsRequired"] = json!([extension]);
-        std::fs::write(&path, doc.glb()).unwrap();
-        assert!(import_model(&path, ImportOptions::default()).is_ok());
-        let error = import_model(&path, strict).unwrap_err().to_string();
-        let end = format!("glass.glb, material \"glass\": {expected}");
-        assert!(error.ends_with(&end), "{error}");
-    }
 }
 
 #[test]

@@ -26,9 +26,11 @@ mod material_layers;
 mod meshes;
 mod morph;
 mod skin;
+mod tangents;
 mod texture;
 mod topology;
 mod uri;
+mod variants;
 
 use std::path::Path;
 
@@ -69,10 +71,13 @@ fn read(
 ) -> Result<(), ImportError> {
     let warnings = &mut model.warnings;
     let Container { json, binary } = container::split(file).map_err(in_file(path))?;
-    let document: Document = serde_json::from_slice(json)
+    let mut document: Document = serde_json::from_slice(json)
         .map_err(|error| ImportError::invalid(path, format!("not a glTF document: {error}")))?;
     check_version(&document).map_err(in_file(path))?;
     extensions::check(&document, path, options, warnings)?;
+    if let Some(variant) = options.variant {
+        variants::choose(&mut document, path, variant, warnings)?;
+    }
     let buffers = Buffers::read(path, &document, binary)?;
     // The binary part of a .glb counts twice, which does no harm to a bound.
     let budget = Budget::for_geometry(file.len() as u64 + buffers.len());
@@ -105,6 +110,7 @@ fn read(
     let left_out = builder.leave_out_unused_meshes(options);
     let meshes = builder.meshes.meshes;
     model.scene.meshes = meshes;
+    tangents::add_missing(&mut model.scene);
     model.left_out.extend(left_out);
     Ok(())
 }

@@ -70,6 +70,7 @@
 //! | `matrix` | 16 numbers, column-major | | in place of the three above |
 //! | `material` | name of a `[[material]]` | | replaces every material of the model |
 //! | `lights` | true, false | true | whether the model brings its lights |
+//! | `variant` | text | that of the file | which of several sets of materials the model shows (`KHR_materials_variants`) |
 //!
 //! Lights and cameras are placed with their model. A light is as bright on the scaled model as it was
 //! on the model by itself, which stands nearer or farther.
@@ -165,6 +166,9 @@ pub struct SceneOptions {
     /// Keys of the scene file and their values, as `light.0.radius` and `0`: they replace what the
     /// file says, one after the other.
     pub overrides: Vec<(String, String)>,
+    /// The variant of materials that models show which have several; `None` for what the scene file
+    /// says.
+    pub variant: Option<String>,
     /// The name of the camera to look through; `None` for what the file says.
     pub camera: Option<String>,
     /// What layers beside the picture read.

@@ -27,6 +27,7 @@ const KEYS: &[&str] = &[
     "matrix",
     "material",
     "lights",
+    "variant",
 ];
 
 /// What a file holds besides the arrays that its instances share.
@@ -39,10 +40,11 @@ struct Loaded {
 /// Puts models into a scene, each file imported once.
 pub struct Models<'a> {
     source: &'a Source,
-    options: ImportOptions,
+    options: ImportOptions<'a>,
     /// The materials of the scene file, which are the first of the scene.
     own_materials: Vec<Material>,
-    loaded: BTreeMap<PathBuf, Loaded>,
+    /// By file and variant.
+    loaded: BTreeMap<(PathBuf, Option<String>), Loaded>,
     /// Images of all models that are not decoded yet, in the order of the scene's.
     pub undecoded: Vec<Undecoded>,
     /// What the importers left out.
@@ -51,7 +53,11 @@ pub struct Models<'a> {
 
 impl<'a> Models<'a> {
     /// No models yet; `own_materials` are those that the scene file names.
-    pub fn new(source: &'a Source, options: ImportOptions, own_materials: Vec<Material>) -> Self {
+    pub fn new(
+        source: &'a Source,
+        options: ImportOptions<'a>,
+        own_materials: Vec<Material>,
+    ) -> Self {
         Self {
             source,
             options,
@@ -73,8 +79,9 @@ impl<'a> Models<'a> {
         let placement = Placement::read(&section)?;
         let material = section.get("material", |v| material::named(v, &self.own_materials))?;
         let has_lights = section.get("lights", |v| v.boolean())?.unwrap_or(true);
+        let variant = section.get("variant", |v| v.string())?;
         let file = section.require("file", Ok)?;
-        let loaded = self.load(file, scene, warnings)?;
+        let loaded = self.load(file, variant, scene, warnings)?;
         for instance in &loaded.instances {
             scene.instances.push(Instance {
                 material: material.unwrap_or(instance.material),
@@ -98,6 +105,7 @@ impl<'a> Models<'a> {
     fn load(
         &mut self,
         file: Value,
+        variant: Option<&str>,
         scene: &mut Scene,
         warnings: &mut Warnings,
     ) -> Result<&Loaded, ImportError> {
@@ -113,12 +121,17 @@ impl<'a> Models<'a> {
         if is_named_here && !is_model(&path) {
             return Err(file.invalid(format!("\"{name}\" is {NOT_A_MODEL}")));
         }
-        let key = path.canonicalize().unwrap_or_else(|_| path.clone());
+        let options = ImportOptions {
+            variant: self.options.variant.or(variant),
+            ..self.options
+        };
+        let real = path.canonicalize().unwrap_or_else(|_| path.clone());
+        let key = (real, options.variant.map(str::to_owned));
         let number = self.loaded.len();
         match self.loaded.entry(key) {
             Entry::Occupied(entry) => Ok(entry.into_mut()),
             Entry::Vacant(entry) => {
-                let mut model = read_model(&path, self.options)?;
+                let mut model = read_model(&path, options)?;
                 for warning in model.warnings.iter() {
                     let message = match is_named_here {
                         true => format!("{name}: {}", warning.message),
