@@ -79,7 +79,7 @@ fn scene_with(more: &str, arguments: &[&str]) -> (String, Option<i32>) {
 fn samples_that_overflow_are_dropped_and_can_be_replayed() {
     let light =
         "[[light]]\nkind = \"point\"\nposition = [0, 2.5, 0]\nintensity = [3e38, 3e38, 3e38]\n";
-    let (said, status) = scene_with(&light.repeat(9), &["--samples", "2"]);
+    let (said, status) = scene_with(&light.repeat(200), &["--samples", "2"]);
     assert_eq!(status, Some(0), "{said}");
     assert!(said.contains("unstable: "), "{said}");
     assert!(said.contains("pixels have no finite samples"), "{said}");
@@ -91,7 +91,7 @@ fn samples_that_overflow_are_dropped_and_can_be_replayed() {
     let id = replay
         .strip_prefix(start)
         .unwrap_or_else(|| panic!("{replay}"));
-    let (said, status) = scene_with(&light.repeat(9), &["--samples", "2", "--replay", id]);
+    let (said, status) = scene_with(&light.repeat(200), &["--samples", "2", "--replay", id]);
     assert_eq!(status, Some(0), "{said}");
 }
 
