@@ -112,7 +112,7 @@ pub struct PictureOptions {
     /// The background is seen by nothing but mirrors and glass, and pictures have an opacity [default: what the scene says]
     #[arg(long)]
     pub transparent: bool,
-    /// What is computed [default: the scene's; path for a glTF file by itself; or whitted]
+    /// What is computed [default: the scene's, or path for a glTF file by itself, or whitted]
     #[arg(long, value_name = "KIND", value_parser = one_of(IntegratorKind::ALL, IntegratorKind::name))]
     pub integrator: Option<IntegratorKind>,
     /// Scattering events of a path; 1 is direct light only [default: the scene's, or 8]

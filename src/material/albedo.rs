@@ -133,15 +133,12 @@ mod tests {
     /// The mean weight of many facets in place of few.
     #[test]
     fn interpolated_albedos_are_near_their_integrals() {
-        let mut worst = 0.0f32;
         for alpha in [0.001, 0.01, 0.03, 0.09, 0.2, 0.45, 0.8, 1.0f32] {
             for cos in [0.003, 0.02, 0.05, 0.13, 0.3, 0.55, 0.8, 1.0f32] {
                 let (got, exact) = (ggx(cos, alpha), ggx_integral(cos, alpha));
                 let error = (got - exact).abs().max_element();
                 assert!(error < 4e-3, "α {alpha}, cos {cos}: {got} {exact}");
-                worst = worst.max(error);
             }
         }
-        println!("largest error of an interpolated albedo: {worst:.1e}");
     }
 }

@@ -226,8 +226,11 @@ mod tests {
             .flat_map(|&r| levels.map(|g| Rgb::new(r, g, 0.6 * g)))
         {
             let back = neutral_inverse(tone_mapped(color, ToneMap::PbrNeutral));
+            // Next to a bright channel single precision has little left of a dark one.
+            let largest = color.max_channel();
             for (a, b) in color.channels().into_iter().zip(back.channels()) {
-                assert!((a - b).abs() < 2e-3 * a.max(0.05), "{color:?}: {back:?}");
+                let error = (a - b).abs();
+                assert!(error < 1e-4 * largest.max(1.0), "{color:?}: {back:?}");
             }
         }
     }

@@ -42,6 +42,10 @@ const GROWTH: f64 = 2.0;
 const LEAST_GROWTHS: [f64; 4] = [1.02, 1.3, 2.0, 4.0];
 /// The share of the work after which a forecast is made.
 const FORECAST_SHARE: f64 = 0.05;
+/// The samples of a pixel, on average, that a forecast wants to see,
+const FORECAST_SAMPLES: u64 = 8;
+/// unless this share of the work is done.
+const LATEST_FORECAST_SHARE: f64 = 0.25;
 
 /// About what the instances that are seen in a pixel take, bytes: most pixels see one or two.
 const OBJECT_BYTES: usize = 256;
@@ -297,8 +301,11 @@ impl Run<'_> {
         let forecast = bounds.forecast(course);
         self.total.store(forecast.samples, Ordering::Relaxed);
         let share = self.pace.seconds() / forecast.seconds;
-        if self.limits.is_open() && error.is_some() && !self.has_forecast && share >= FORECAST_SHARE
-        {
+        // Of a handful of samples nobody can tell how fast the error will fall.
+        let is_known = now.samples >= FORECAST_SAMPLES * self.job.crop.area()
+            && share >= FORECAST_SHARE
+            || share >= LATEST_FORECAST_SHARE;
+        if self.limits.is_open() && error.is_some() && !self.has_forecast && is_known {
             self.has_forecast = true;
             (self.observe)(Event::Forecast(forecast));
         }

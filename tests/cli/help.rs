@@ -123,7 +123,10 @@ fn the_help_knows_the_defaults() {
     let sampling = settings.sampling;
     for (option, default) in [
         ("--size", format!("{}x{}", settings.size.x, settings.size.y)),
-        ("--integrator", settings.integrator.name().to_owned()),
+        (
+            "--integrator",
+            "path for a glTF file by itself, or whitted".to_owned(),
+        ),
         ("--max-depth", settings.max_depth.to_string()),
         ("--samples", sampling.samples.to_string()),
         ("--pattern", sampling.pattern.name().to_owned()),
