@@ -86,6 +86,7 @@ fn run_on_pool(
         limits,
         kept,
         denoiser,
+        automatic_stops: None,
         clock,
         seconds,
     };
@@ -115,6 +116,8 @@ struct Work<'a> {
     limits: Limits,
     kept: Kept,
     denoiser: Option<Denoiser>,
+    /// What the first picture asked for.
+    automatic_stops: Option<f32>,
     clock: StepClock,
     seconds: Seconds,
 }
@@ -162,8 +165,12 @@ impl Work<'_> {
         };
         match options.output.exposure {
             Some(Exposure::Automatic) => {
-                let stops = automatic_exposure(values.picture());
-                console.say(format_args!("note: --exposure {stops} shows the same"));
+                // The first picture's for all: a sequence must not flicker.
+                let stops = *self.automatic_stops.get_or_insert_with(|| {
+                    let stops = automatic_exposure(values.picture());
+                    console.say(format_args!("note: --exposure {stops} shows the same"));
+                    stops
+                });
                 let targets = targets.exposed(stops);
                 targets.write(window, &values, &metadata)?;
             }
