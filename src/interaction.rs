@@ -11,6 +11,9 @@ pub struct Interaction {
     pub point: Vec3,
     /// How far the true point may be from `point` along each axis.
     pub point_error: Vec3,
+    /// Where vertex normals say that the surface bulges out of its triangle: a point above `point` on the bulge, where
+    /// shadow rays start ([`Self::shadow_ray`]).
+    pub smooth_point: Option<Vec3>,
     /// Normal of the triangle.
     pub geometric_normal: UnitVec3,
     /// Interpolated and bumped normal; what shading uses.
@@ -31,30 +34,55 @@ impl Interaction {
         Ray::new(self.origin_towards(direction), direction)
     }
 
+    /// A shadow ray from here along `direction`: as [`Self::spawn_ray`], but from the smooth point, where there is one.
+    ///
+    /// From there light is seen as far below the horizon of the triangle as that of the smooth surface
+    /// reaches, so that shadows do not end at edges of triangles (Hanika 2021, "Hacking the Shadow
+    /// Terminator", in "Ray Tracing Gems II").
+    pub fn shadow_ray(&self, direction: Vec3) -> Ray {
+        match self.smooth_point {
+            Some(_) => Ray::new(self.smooth_origin(), direction),
+            None => self.spawn_ray(direction),
+        }
+    }
+
+    /// A shadow ray from here to `target`: as [`Self::spawn_ray_to`], but from the smooth point, where there is one.
+    pub fn shadow_ray_to(&self, target: Vec3) -> Ray {
+        match self.smooth_point {
+            Some(_) => ray_to(self.smooth_origin(), target),
+            None => self.spawn_ray_to(target),
+        }
+    }
+
+    /// Whether light from `direction` does not come from behind the triangle, or passes over the bulge that hides
+    /// it from the triangle.
+    pub fn can_see(&self, direction: Vec3) -> bool {
+        self.smooth_point.is_some() || self.geometric_normal.dot(direction) > 0.0
+    }
+
     /// A ray from here to `target`, with `target` at `t = 1` and the ray ending just before it.
     ///
     /// Surfaces that touch `target` within rounding do not count as in between.
     pub fn spawn_ray_to(&self, target: Vec3) -> Ray {
-        let origin = self.origin_towards(target - self.point);
-        let direction = target - origin;
-        let length = direction.abs().max_element();
-        let largest = origin.abs().max(target.abs()).max_element();
-        // A surface through `target` is off by up to a few roundings of the coordinates.
-        let slack = gamma(8) * (1.0 + largest / length);
-        Ray {
-            t_max: (1.0 - slack).max(0.0),
-            ..Ray::new(origin, direction)
-        }
+        ray_to(self.origin_towards(target - self.point), target)
     }
 
     fn origin_towards(&self, direction: Vec3) -> Vec3 {
         let n = *self.geometric_normal;
-        let distance = n.abs().dot(self.point_error) * (1.0 + gamma(4));
-        let offset = if n.dot(direction) < 0.0 {
-            n * -distance
-        } else {
-            n * distance
-        };
+        self.moved(self.point, if n.dot(direction) < 0.0 { -n } else { n })
+    }
+
+    /// On the viewer's side of the triangle, whatever the direction: it is the bulge that is left, not the triangle.
+    fn smooth_origin(&self) -> Vec3 {
+        self.moved(
+            self.smooth_point.unwrap_or(self.point),
+            *self.geometric_normal,
+        )
+    }
+
+    /// `point` moved along `n` by the bound of its error.
+    fn moved(&self, point: Vec3, n: Vec3) -> Vec3 {
+        let offset = n * (n.abs().dot(self.point_error) * (1.0 + gamma(4)));
         let away = |p: f32, o: f32| {
             let moved = p + o;
             // Round away from the surface, so that the sum does not take the offset back.
@@ -67,10 +95,23 @@ impl Interaction {
             }
         };
         Vec3::new(
-            away(self.point.x, offset.x),
-            away(self.point.y, offset.y),
-            away(self.point.z, offset.z),
+            away(point.x, offset.x),
+            away(point.y, offset.y),
+            away(point.z, offset.z),
         )
+    }
+}
+
+/// The ray from `origin` with `target` at `t = 1` that ends just before it.
+fn ray_to(origin: Vec3, target: Vec3) -> Ray {
+    let direction = target - origin;
+    let length = direction.abs().max_element();
+    let largest = origin.abs().max(target.abs()).max_element();
+    // A surface through `target` is off by up to a few roundings of the coordinates.
+    let slack = gamma(8) * (1.0 + largest / length);
+    Ray {
+        t_max: (1.0 - slack).max(0.0),
+        ..Ray::new(origin, direction)
     }
 }
 
@@ -92,6 +133,7 @@ mod tests {
             let interaction = Interaction {
                 point,
                 point_error: rounding_error(point),
+                smooth_point: None,
                 geometric_normal: normal,
                 shading_normal: normal,
                 wo: normal,

@@ -121,6 +121,7 @@ fn surface(triangles: &Triangles, ray: &Ray, hit: &Hit) -> Option<Interaction> {
     Some(Interaction {
         point,
         point_error: rounding_error(point),
+        smooth_point: None,
         geometric_normal: normal,
         shading_normal: normal,
         wo,

@@ -30,6 +30,9 @@ pub fn metadata(
         ("target", sampling.target.name().to_owned()),
         ("seed", sampling.seed.to_string()),
     ];
+    if !settings.shadow_terminator {
+        metadata.push(("shadow_terminator", "false".to_owned()));
+    }
     if let Some(samples) = settings.light_samples {
         metadata.push(("light_samples", samples.to_string()));
     }

@@ -103,6 +103,9 @@ pub struct PictureOptions {
     /// Scattering events of a path; 1 is direct light only [default: the scene's, or 8]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_DEPTH)))]
     pub max_depth: Option<u32>,
+    /// Start shadow rays on the triangles of smooth surfaces, though facets show where light ends
+    #[arg(long)]
+    pub no_shadow_terminator: bool,
 }
 
 /// How it is sampled.
@@ -171,6 +174,9 @@ pub struct WorkOptions {
     /// Refuse to build a tree that would take more memory than this, like 500M or 4G [default: no limit]
     #[arg(long, value_name = "BYTES", value_parser = arguments::bytes)]
     pub max_memory: Option<u64>,
+    /// Send rays out of closed meshes through their edges and vertices, and report those that meet nothing
+    #[arg(long)]
+    pub check_leaks: bool,
     /// Trace one sample of one pixel (column, row, index), print its rays in world coordinates and write no files
     #[arg(long, value_name = "X,Y,I", value_parser = arguments::sample_id)]
     pub replay: Option<SampleId>,
@@ -245,6 +251,7 @@ impl RenderOptions {
         put(self.sampling.pattern, &mut settings.sampling.pattern);
         put(self.sampling.target, &mut settings.sampling.target);
         put(self.sampling.seed, &mut settings.sampling.seed);
+        settings.shadow_terminator &= !self.picture.no_shadow_terminator;
         let light_samples = self.sampling.light_samples;
         settings.light_samples = light_samples.or(settings.light_samples);
     }

@@ -10,6 +10,7 @@ use halfshade::output::exr::Window;
 use halfshade::prepare::{Prepared, prepare_keeping};
 use halfshade::render::{self, Event, Job, Limits, Significant, render_within, replay};
 use halfshade::scene::{Placed, Scene, Settings};
+use halfshade::stress::stability::Stability;
 
 use super::Failure;
 use super::arguments::SampleId;
@@ -24,6 +25,9 @@ use super::options::RenderOptions;
 use super::progress::RenderProgress;
 use super::stats::{Done, Seconds, Stats, StepClock};
 use super::targets::Targets;
+
+/// Rays of `--check-leaks`.
+const LEAK_RAYS: u64 = 200_000;
 
 /// Does what the options say.
 pub fn run(options: &RenderOptions) -> Result<(), Failure> {
@@ -97,6 +101,7 @@ fn run_on_pool(
     targets.write(window, &values, &metadata(options, settings, &film))?;
     seconds.output = clock.step();
     seconds.total = clock.total();
+    let stability = stability(options, &job, &film);
     let done = Done {
         film: &film,
         pixels: values.picture(),
@@ -105,6 +110,7 @@ fn run_on_pool(
         seconds,
         error: film.error(),
         left_out: &left_out,
+        stability: &stability,
     };
     finish(options, targets, &done)
 }
@@ -213,7 +219,6 @@ fn watched(job: &Job, limits: &Limits, interrupt: &Interrupt, console: Console) 
         interrupt.rendering_is_complete();
     }
     progress.finish();
-    say_rejected(console, &film);
     film
 }
 
@@ -235,14 +240,28 @@ fn announce_samples(job: &Job, limits: &Limits, console: Console) {
     }
 }
 
-fn say_rejected(console: Console, film: &Film) {
-    if let Some(first) = film.first_rejected {
-        console.warn(format_args!(
-            "{} samples were not finite numbers and were left out; \
-             --replay {},{},{} shows the first",
-            film.rejected, first.pixel.x, first.pixel.y, first.index
-        ));
-    }
+/// What the render says about its own numbers.
+fn stability(options: &RenderOptions, job: &Job, film: &Film) -> Stability {
+    let leaks = options.work.check_leaks.then(|| job.scene.leaks(LEAK_RAYS));
+    Stability::of(job.scene, film, leaks, &command())
+}
+
+/// The command that was given, as a shell reads it.
+fn command() -> String {
+    let arguments = std::env::args_os().skip(1);
+    let quoted = arguments.map(|argument| {
+        let argument = argument.to_string_lossy();
+        let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./,=:+@%".contains(c);
+        if !argument.is_empty() && argument.chars().all(is_plain) {
+            argument.into_owned()
+        } else {
+            format!("'{}'", argument.replace('\'', "'\\''"))
+        }
+    });
+    let words: Vec<String> = std::iter::once("halfshade".to_owned())
+        .chain(quoted)
+        .collect();
+    words.join(" ")
 }
 
 /// Writes the stats and says what was done.
@@ -272,9 +291,21 @@ fn finish(options: &RenderOptions, targets: &Targets, done: &Done) -> Result<(),
         s.output,
         done.error.map_or(String::new(), |error| error_text(&error))
     ));
+    say_stability(console, done.stability);
     match done.film.stopped_by {
         StoppedBy::Interrupt => Err(Failure::Interrupted),
         _ => Ok(()),
+    }
+}
+
+/// The verdict, and what led to it.
+fn say_stability(console: Console, stability: &Stability) {
+    for line in stability.details() {
+        console.detail(line);
+    }
+    console.say(&stability.verdict);
+    if let Some(replay) = &stability.dropped.replay {
+        console.say(format_args!("the first dropped sample: {replay}"));
     }
 }
 

@@ -8,6 +8,7 @@ use halfshade::color::Rgb;
 use halfshade::film::{ErrorEstimate, Film, RayCounts, StoppedBy};
 use halfshade::output::{OutputError, write_whole};
 use halfshade::scene::LeftOut;
+use halfshade::stress::stability::Stability;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
@@ -31,6 +32,8 @@ pub struct Stats<'a> {
     pub error: Option<ErrorStats>,
     pub stopped_by: &'static str,
     pub rejected_samples: u64,
+    /// What was hard about the render, and the verdict.
+    pub stability: &'a Stability,
     /// What the picture did not need.
     pub left_out: &'a [LeftOut],
     /// Of the linear pixels: red, green, blue as little-endian singles, row by row.
@@ -106,6 +109,7 @@ pub struct Done<'a> {
     pub seconds: Seconds,
     pub error: Option<ErrorEstimate>,
     pub left_out: &'a [LeftOut],
+    pub stability: &'a Stability,
 }
 
 impl<'a> Stats<'a> {
@@ -134,6 +138,7 @@ impl<'a> Stats<'a> {
             error: done.error.map(ErrorStats::from),
             stopped_by: reason(done.film.stopped_by),
             rejected_samples: done.film.rejected,
+            stability: done.stability,
             left_out: done.left_out,
             sha256: digest(done.pixels),
         }

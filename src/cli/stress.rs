@@ -48,6 +48,14 @@ pub struct StressOptions {
     /// More rays, seeds and scales
     #[arg(long)]
     full: bool,
+    /// With --full, rays at edges and vertices of closed meshes (G1)
+    #[arg(
+        long,
+        value_name = "N",
+        requires = "full",
+        default_value_t = 1_000_000_000
+    )]
+    rays: u64,
     /// Write a page with plots, stress.html, to this folder
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -70,7 +78,7 @@ pub fn run(options: &StressOptions) -> Result<(), Failure> {
             .map_err(|error| Failure::job(format_args!("{}: {error}", folder.display())))?;
     }
     let effort = if options.full {
-        Effort::Full
+        Effort::Full { rays: options.rays }
     } else {
         Effort::Short
     };

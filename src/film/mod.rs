@@ -89,6 +89,24 @@ impl RayCounts {
     }
 }
 
+/// Rays that were not followed since their path had as many scattering events as it may have.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CutOff {
+    /// How many.
+    pub rays: u64,
+    /// What they count for in their samples, by their largest channel, summed up. Each would have added at
+    /// most this share of the radiance that it would have brought back.
+    pub weight: f64,
+}
+
+impl CutOff {
+    /// Adds those of `other`.
+    pub fn add(&mut self, other: &Self) {
+        self.rays += other.rays;
+        self.weight += other.weight;
+    }
+}
+
 /// A picture: the pixels of a rectangle of the film.
 #[derive(Clone, Debug)]
 pub struct Film {
@@ -104,6 +122,8 @@ pub struct Film {
     pub first_rejected: Option<RejectedSample>,
     /// Rays that were traced.
     pub rays: RayCounts,
+    /// Rays that were cut off by the depth limit.
+    pub cut_off: CutOff,
     /// Why it has no more samples.
     pub stopped_by: StoppedBy,
 }

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::color::Rgb;
-use crate::film::RayCounts;
+use crate::film::{CutOff, RayCounts};
 use crate::math::Ray;
 
 /// Why a ray was traced.
@@ -51,6 +51,8 @@ pub struct RayRecord {
 pub struct RayLog {
     /// How many of which kind.
     pub counts: RayCounts,
+    /// Rays that were not traced since their path had reached its depth.
+    pub cut_off: CutOff,
     /// All of them in order, where somebody asked.
     pub records: Option<Vec<RayRecord>>,
 }
@@ -62,6 +64,12 @@ impl RayLog {
             records: Some(Vec::new()),
             ..Self::default()
         }
+    }
+
+    /// Counts a ray of this weight that is not traced since its path has reached its depth.
+    pub fn cut_off(&mut self, weight: Rgb) {
+        self.cut_off.rays += 1;
+        self.cut_off.weight += f64::from(weight.max_channel());
     }
 
     /// Counts a ray; `record` is asked for where rays are kept.

@@ -23,6 +23,8 @@ const LEAST_WEIGHT: f32 = 1e-5;
 pub struct Whitted<'a> {
     scene: &'a PreparedScene<'a>,
     max_depth: u32,
+    /// Whether shadow rays start on the surface that vertex normals describe.
+    smooths_shadows: bool,
     /// Per light: shadow rays per shading point.
     samples: Vec<u32>,
     /// Lights that rays can meet.
@@ -54,6 +56,7 @@ impl<'a> Whitted<'a> {
         Self {
             scene,
             max_depth: settings.max_depth,
+            smooths_shadows: settings.shadow_terminator,
             samples: scene.lights.iter().map(samples).collect(),
             visible: scene.lights.iter().filter(|l| l.is_visible()).collect(),
         }
@@ -98,7 +101,7 @@ impl<'a> Whitted<'a> {
                     ..*from
                 };
                 total += here.weight * self.shade(&surface, &here, sampler, log);
-                straight += opacity * self.scatter(&surface, &here, pending);
+                straight += opacity * self.scatter(&surface, &here, log, pending);
             }
             weight *= straight;
             if weight.max_channel() < LEAST_WEIGHT {
@@ -121,7 +124,10 @@ impl<'a> Whitted<'a> {
 
     /// Emitted, ambient and direct light that leaves `surface` to the viewer.
     fn shade(&self, surface: &Surface, from: &Pending, sampler: &Sampler, log: &mut RayLog) -> Rgb {
-        let at = &surface.interaction;
+        let mut at = surface.interaction;
+        if !self.smooths_shadows {
+            at.smooth_point = None;
+        }
         let cos_o = at.shading_normal.dot(*at.wo);
         let ambient = self.scene.background.ambient * surface.material.occlusion(&surface.lookup);
         let mut total =
@@ -142,7 +148,7 @@ impl<'a> Whitted<'a> {
             for j in 0..count {
                 let u = sampler.light(from.vertex, number, j, count);
                 if let Some(sample) = light.sample(at.point, u) {
-                    sum += self.direct(at, &bsdf, &sample, from, number, log);
+                    sum += self.direct(&at, &bsdf, &sample, from, number, log);
                 }
             }
             total += sum / count as f32;
@@ -161,12 +167,12 @@ impl<'a> Whitted<'a> {
         log: &mut RayLog,
     ) -> Rgb {
         let cos_i = at.shading_normal.dot(*sample.wi);
-        if cos_i <= 0.0 || at.geometric_normal.dot(*sample.wi) <= 0.0 {
+        if cos_i <= 0.0 || !at.can_see(*sample.wi) {
             return Rgb::BLACK;
         }
         // The end of the shadow ray may be below the horizon of a point that sees the centre.
         if let ShadowEnd::Point(end) = sample.shadow
-            && at.geometric_normal.dot(end - at.point) <= 0.0
+            && !at.can_see(end - at.point)
         {
             return Rgb::BLACK;
         }
@@ -176,8 +182,8 @@ impl<'a> Whitted<'a> {
             return Rgb::BLACK;
         }
         let ray = match sample.shadow {
-            ShadowEnd::Point(target) => at.spawn_ray_to(target),
-            ShadowEnd::Direction(direction) => at.spawn_ray(*direction),
+            ShadowEnd::Point(target) => at.shadow_ray_to(target),
+            ShadowEnd::Direction(direction) => at.shadow_ray(*direction),
         };
         let value = unshadowed * transmittance(self.scene, &ray);
         let kind = RayKind::Shadow(light);
@@ -192,7 +198,13 @@ impl<'a> Whitted<'a> {
     }
 
     /// Sends rays on from a mirror or from glass; returns the share that goes straight on.
-    fn scatter(&self, surface: &Surface, from: &Pending, pending: &mut Vec<Pending>) -> Rgb {
+    fn scatter(
+        &self,
+        surface: &Surface,
+        from: &Pending,
+        log: &mut RayLog,
+        pending: &mut Vec<Pending>,
+    ) -> Rgb {
         let at = &surface.interaction;
         let specular = &surface.bsdf.specular;
         let cos_o = at.shading_normal.dot(*at.wo).min(1.0);
@@ -221,6 +233,17 @@ impl<'a> Whitted<'a> {
                 .or_else(|| refract(*at.wo, *at.geometric_normal, eta));
             if let Some(beyond) = beyond.filter(|_| !specular.is_straight()) {
                 send(RayKind::Refracted, beyond, through, child(from.vertex, 3));
+            }
+        } else {
+            let bent = if specular.is_straight() {
+                Rgb::BLACK
+            } else {
+                through
+            };
+            for weight in [mirrored, bent].map(|share| from.weight * share) {
+                if weight.max_channel() >= LEAST_WEIGHT {
+                    log.cut_off(weight);
+                }
             }
         }
         if specular.is_straight() {

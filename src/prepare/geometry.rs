@@ -1,11 +1,14 @@
 //! The triangles that rays meet: flattened where that is cheap, instances where it is not.
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
 
 use crate::bvh::{Builder, Bvh, Tracer};
-use crate::math::{DAffine3, DMat3, DVec3, Mat3, Vec3, gamma};
+use crate::math::{DAffine3, DMat3, Mat3, Vec3, gamma};
 use crate::scene::{Instance, MeshId, Scene};
 
+use super::defects::{Defects, defects};
 use super::placement::Placement;
 
 /// Triangles of one tree, in the coordinates that they are traced in.
@@ -94,10 +97,8 @@ pub struct Geometry {
     pub trees: Vec<TreeGeometry>,
     /// Per instance of the tracer: its tree, and what it is.
     pub traced: Vec<Traced>,
-    /// Triangles that were dropped since a vertex is not a finite number.
-    pub non_finite_triangles: u64,
-    /// Triangles without area, which no ray can hit; each mesh that is kept as instances counts once.
-    pub flat_triangles: u64,
+    /// The meshes with triangles that are hard to render; one that is kept as instances counts once.
+    pub defects: BTreeMap<MeshId, Defects>,
 }
 
 impl Geometry {
@@ -161,8 +162,8 @@ impl Geometry {
             });
         }
 
-        let flat_triangles = trees.iter().map(without_area).sum();
-        let non_finite_triangles = trees.iter_mut().map(drop_non_finite).sum();
+        let defects = defects_by_mesh(scene, &trees, &traced);
+        trees.iter_mut().for_each(drop_non_finite);
         let bvhs: Vec<Bvh> = trees
             .par_iter()
             .map(|tree| Bvh::build(&tree.positions, &tree.indices, builder))
@@ -172,8 +173,7 @@ impl Geometry {
             tracer,
             trees,
             traced,
-            non_finite_triangles,
-            flat_triangles,
+            defects,
         }
     }
 
@@ -282,29 +282,44 @@ fn flatten(
     (TreeGeometry { positions, indices }, parts)
 }
 
-/// How many triangles have no area, while all their vertices are finite.
-fn without_area(tree: &TreeGeometry) -> u64 {
-    let is_flat = |corners: &&[u32; 3]| {
-        let [a, b, c] = corners.map(|i| tree.positions[i as usize].as_dvec3());
-        (b - a).cross(c - a) == DVec3::ZERO
-    };
-    tree.indices.par_iter().filter(is_flat).count() as u64
+/// The meshes of `trees` that have triangles which are hard to render.
+fn defects_by_mesh(
+    scene: &Scene,
+    trees: &[TreeGeometry],
+    traced: &[Traced],
+) -> BTreeMap<MeshId, Defects> {
+    let mesh = |instance: u32| scene.instances[instance as usize].mesh;
+    let mut parts = vec![Vec::new(); trees.len()];
+    for traced in traced {
+        parts[traced.tree as usize] = match &traced.placing {
+            Placing::Flattened(parts) => (parts.iter())
+                .map(|part| (part.first_triangle, mesh(part.instance)))
+                .collect(),
+            Placing::Instanced { instance, .. } => vec![(0, mesh(*instance))],
+        };
+    }
+    let mut all = BTreeMap::<MeshId, Defects>::new();
+    for (tree, parts) in trees.iter().zip(&parts) {
+        for (mesh, found) in defects(tree, parts) {
+            all.entry(mesh).or_default().add(&found);
+        }
+    }
+    all.retain(|_, found| *found != Defects::default());
+    all
 }
 
 /// Collapses triangles with a vertex that is not finite to a point, so that the numbers of the
-/// others stay what they are; returns how many there were.
-fn drop_non_finite(tree: &mut TreeGeometry) -> u64 {
+/// others stay what they are.
+fn drop_non_finite(tree: &mut TreeGeometry) {
     let TreeGeometry { positions, indices } = tree;
     if positions.par_iter().all(|p| p.is_finite()) {
-        return 0;
+        return;
     }
-    let dropped = indices
+    indices
         .par_iter_mut()
         .filter(|corners| corners.iter().any(|&i| !positions[i as usize].is_finite()))
-        .map(|corners| *corners = [corners[0]; 3])
-        .count();
+        .for_each(|corners| *corners = [corners[0]; 3]);
     for p in positions.iter_mut().filter(|p| !p.is_finite()) {
         *p = Vec3::ZERO;
     }
-    dropped as u64
 }

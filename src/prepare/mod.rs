@@ -4,22 +4,27 @@
 //! over them, and lights in the same coordinates. What leaves here can be rendered without
 //! failing.
 
+mod defects;
 mod geometry;
+mod leaks;
 mod left_out;
 mod placement;
 mod surface;
 
 use std::cell::RefCell;
 use std::cmp::Ordering;
+use std::collections::BTreeMap;
 
 use crate::bvh::{Builder, Hit};
 use crate::camera::Camera;
 use crate::import::{WarningCode, Warnings};
 use crate::light::Light;
 use crate::math::{Aabb, DAffine3, DVec3, Mat3, Ray, Vec3, gamma};
-use crate::scene::{Background, Keep, LeftOut, Omission, Placed, Scene};
+use crate::scene::{Background, Keep, LeftOut, MeshId, Omission, Placed, Scene};
 
+pub use defects::{Defects, NEEDLE_ASPECT};
 use geometry::Geometry;
+pub use leaks::Leaks;
 pub use placement::Placement;
 pub use surface::Surface;
 
@@ -92,13 +97,13 @@ fn prepare_all(scene: &Scene, builder: Builder, flatten_budget: u64, keep: Keep)
     warnings.add_many(
         WarningCode::NonFiniteVertex,
         "triangles with a vertex that is not a finite number were left out",
-        geometry.non_finite_triangles,
+        geometry.defects.values().map(|d| d.non_finite).sum(),
     );
     let lights: Vec<Light> = scene.lights.iter().map(|l| light(l, &placement)).collect();
     warnings.add_many(
         WarningCode::DegenerateTriangle,
         "triangles without area were left out",
-        geometry.flat_triangles,
+        geometry.defects.values().map(|d| d.degenerate).sum(),
     );
     let prepared = PreparedScene {
         scene,
@@ -229,6 +234,11 @@ impl PreparedScene<'_> {
     /// Whether no light passes the triangle that was hit, wherever it was hit.
     fn is_opaque(&self, hit: &Hit) -> bool {
         hit.triangle < self.geometry.traced[hit.instance as usize].opaque_triangles
+    }
+
+    /// The meshes that have triangles which are hard to render; one that is kept as instances counts once.
+    pub fn defects(&self) -> &BTreeMap<MeshId, Defects> {
+        &self.geometry.defects
     }
 
     /// Bytes of triangles, trees and tables, beyond what the scene itself holds.

@@ -170,6 +170,7 @@ impl<'a> PreparedScene<'a> {
         let is_front = outward.dot(*wo) >= 0.0;
         let geometric_normal = if is_front { outward } else { -outward };
         let smooth = self.smooth_normal(&at).unwrap_or(outward);
+        let height = self.bulge(&at, &vertices, exact, outward, is_front);
         let bumped = match &material.normal_map {
             Some(map) => self.bumped(map, &at, &lookup, edges, smooth),
             None => smooth,
@@ -179,6 +180,8 @@ impl<'a> PreparedScene<'a> {
             interaction: Interaction {
                 point,
                 point_error: self.point_error(hit, ray, point),
+                smooth_point: height
+                    .map(|height| (exact + geometric_normal.as_dvec3() * height).as_vec3()),
                 geometric_normal,
                 shading_normal: facing(bumped, geometric_normal, wo),
                 wo,
@@ -222,6 +225,41 @@ impl<'a> PreparedScene<'a> {
         }
         let normal = at.interpolate(normals, mix3);
         UnitVec3::normalize(self.normal_matrices[at.instance_number as usize] * normal)
+    }
+
+    /// How far above `point` of its triangle the surface lies that the vertex normals describe, on the side that is seen;
+    /// `None` where it does not bulge out on that side.
+    ///
+    /// Each vertex gives a plane across its normal; the height is that of the planes above `point`, weighted as
+    /// the normals are (Hanika 2021, "Hacking the Shadow Terminator"). Unlike there only the part
+    /// across the triangle counts, so that nothing beside it comes to be in between.
+    fn bulge(
+        &self,
+        at: &Located,
+        vertices: &[DVec3; 3],
+        point: DVec3,
+        outward: UnitVec3,
+        is_front: bool,
+    ) -> Option<f64> {
+        /// Heights below this share of the distance of the vertex are rounding of its normal.
+        const LEAST_SLOPE: f64 = 1e-6;
+        let normals = at.mesh.normals();
+        if normals.is_empty() {
+            return None;
+        }
+        let matrix = &self.normal_matrices[at.instance_number as usize];
+        let (side, outward) = (if is_front { 1.0 } else { -1.0 }, outward.as_dvec3());
+        let mut height = 0.0;
+        for (k, vertex) in vertices.iter().enumerate() {
+            let normal = (*matrix * normals[at.corners[k] as usize]).as_dvec3();
+            let (way, length) = (point - *vertex, normal.length());
+            let above = -side * way.dot(normal);
+            let lift = outward.dot(normal);
+            if lift > 0.0 && above > LEAST_SLOPE * length * way.length() {
+                height += f64::from(at.weights[k]) * above * lift / (length * length);
+            }
+        }
+        (height > 0.0 && height.is_finite()).then_some(height)
     }
 
     /// `normal` bent by a normal map.

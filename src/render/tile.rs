@@ -4,7 +4,7 @@ use super::Job;
 use super::backdrop::Foreground;
 use super::stop::Stop;
 use crate::camera::{CameraRays, film_position};
-use crate::film::{ErrorSums, Film, Pixel, RayCounts, Rect, RejectedSample, StoppedBy};
+use crate::film::{CutOff, ErrorSums, Film, Pixel, RayCounts, Rect, RejectedSample, StoppedBy};
 use crate::integrate::{FirstSurface, Integrator, RayLog};
 use crate::math::{Ray, UVec2, Vec2};
 use crate::sampling::Sampler;
@@ -29,6 +29,7 @@ pub(super) struct Tile {
     rejected: u64,
     first_rejected: Option<RejectedSample>,
     pub rays: RayCounts,
+    cut_off: CutOff,
     /// The error of its pixels; `None` where one does not tell.
     pub error: Option<ErrorSums>,
 }
@@ -45,6 +46,7 @@ impl Tile {
             rejected: 0,
             first_rejected: None,
             rays: RayCounts::default(),
+            cut_off: CutOff::default(),
             error: None,
         }
     }
@@ -99,6 +101,7 @@ impl Tile {
             }
         }
         self.rays.add(&log.counts);
+        self.cut_off.add(&log.cut_off);
         self.error = self.error_sums();
         done
     }
@@ -180,6 +183,7 @@ pub(super) fn assemble(job: &Job, tiles: &[Tile], stopped_by: StoppedBy) -> Film
         rejected: 0,
         first_rejected: None,
         rays: RayCounts::default(),
+        cut_off: CutOff::default(),
         stopped_by,
     };
     for tile in tiles {
@@ -194,6 +198,7 @@ pub(super) fn assemble(job: &Job, tiles: &[Tile], stopped_by: StoppedBy) -> Film
         film.rejected += tile.rejected;
         film.first_rejected = film.first_rejected.or(tile.first_rejected);
         film.rays.add(&tile.rays);
+        film.cut_off.add(&tile.cut_off);
     }
     film
 }

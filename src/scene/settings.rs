@@ -94,6 +94,9 @@ pub struct Settings {
     pub integrator: IntegratorKind,
     /// Scattering events of a path: 1 is direct light only.
     pub max_depth: u32,
+    /// Whether shadow rays start on the smooth surface that vertex normals describe
+    /// ([`crate::interaction::Interaction::shadow_ray`]), and not on the triangle.
+    pub shadow_terminator: bool,
     /// Shadow rays per shading point, in place of what each light says.
     pub light_samples: Option<u32>,
 }
@@ -105,6 +108,7 @@ impl Default for Settings {
             sampling: SamplingConfig::default(),
             integrator: IntegratorKind::Whitted,
             max_depth: 8,
+            shadow_terminator: true,
             light_samples: None,
         }
     }

@@ -4,7 +4,8 @@
 //! pure function from the [`Effort`] to its [`Check`]s: what was tried, what was measured, what
 //! bound it must keep. The scenes ([`scenes`], [`floor`], [`meshes`]), closed forms ([`closed_form`]) and the
 //! tracer in double precision ([`mod@reference`]) serve the tests as well. A scene of anyone's own is
-//! held against itself in [`invariance`].
+//! held against itself in [`invariance`]; what every render says of itself
+//! is in [`stability`].
 
 mod check;
 pub mod closed_form;
@@ -17,6 +18,7 @@ mod page;
 pub mod reference;
 pub mod scattering;
 pub mod scenes;
+pub mod stability;
 pub mod still_life;
 
 pub use check::{Check, Curve, Report, Status, Sweep};
@@ -28,7 +30,10 @@ pub enum Effort {
     /// All cases within a minute on two cores.
     Short,
     /// More rays, seeds and scales.
-    Full,
+    Full {
+        /// Rays at edges and vertices of closed meshes (G1).
+        rays: u64,
+    },
 }
 
 impl Effort {
@@ -36,7 +41,7 @@ impl Effort {
     pub fn pick<T>(self, short: T, full: T) -> T {
         match self {
             Self::Short => short,
-            Self::Full => full,
+            Self::Full { .. } => full,
         }
     }
 }

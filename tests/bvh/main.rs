@@ -9,5 +9,3 @@ mod degenerate;
 mod instances;
 mod meshes;
 mod reference;
-mod slivers;
-mod watertight;

@@ -9,6 +9,7 @@ mod help;
 mod interrupt;
 mod limits;
 mod terminal;
+mod verdict;
 
 use std::fs;
 use std::path::Path;

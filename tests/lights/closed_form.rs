@@ -1,4 +1,4 @@
-//! Irradiance against closed forms (numerics.md L2 to L4) and the laws of attenuation.
+//! How lights are sampled, and the laws of attenuation.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -6,114 +6,34 @@ use halfshade::color::Rgb;
 use halfshade::light::{Falloff, Light, PointLight, SpotLight};
 use halfshade::math::{DVec3, UnitVec3, Vec2, Vec3};
 use halfshade::sampling::Pattern;
-use halfshade::stress::closed_form::{disk_irradiance, polygon_irradiance};
 
 use crate::common::chi_square::Moments;
 use crate::{disk, distant, irradiance, kind, numbers, point, rectangle, sphere, spot, unit};
 
+/// The irradiance itself is held to its closed form by the cases L2 to L4 (`tests/stress.rs`).
 #[test]
-fn a_disk_gives_the_irradiance_of_its_closed_form() {
-    for (radius, height, offset) in [
-        (1.0, 3.0, 0.0),
-        (1.0, 3.0, 2.0),
-        (1.0, 0.2, 0.5),
-        (1.0, 0.01, 1.0),
-        (1.0, 0.01, 0.3),
-        (1.0, 1e-4, 0.9999),
-        (1e-3, 3.0, 1.0),
-        (1e6, 1.0, 1e5),
-        (1e-6, 1e-6, 1e-6),
-        (1e15, 3e15, 2e15),
-    ] {
-        let light = Light::Disk(disk(Vec3::new(offset, height, 0.0), -UnitVec3::Y, radius));
-        let [r, h, a] = [radius, height, offset].map(f64::from);
-        let exact = disk_irradiance(r, h, a);
-        let measured = irradiance(&light, Vec3::ZERO, UnitVec3::Y, 200_000);
-        let relative = measured.standard_error() / exact;
-        println!(
-            "disk R {radius} h {height} a {offset}: E {exact:.6e}, standard error {relative:.1e}"
-        );
-        measured.assert_mean(exact, &format!("R {radius}, h {height}, a {offset}"));
-        // By solid angle only the cosine varies: less than 100 % a sample, wherever the disk is.
-        assert!(relative < 1.0 / 200_000_f64.sqrt(), "{relative}");
-        let behind = Light::Disk(disk(Vec3::new(offset, height, 0.0), UnitVec3::Y, radius));
+fn a_disk_is_sampled_by_solid_angle_and_shines_to_one_side() {
+    for (radius, height, offset) in [(1.0, 3.0, 2.0), (1.0, 1e-4, 0.9999), (1e6, 1.0, 1e5)] {
+        let center = Vec3::new(offset, height, 0.0);
+        let light = Light::Disk(disk(center, -UnitVec3::Y, radius));
+        let measured = irradiance(&light, Vec3::ZERO, UnitVec3::Y, 100_000);
+        let relative = measured.standard_error() / measured.mean();
+        // Only the cosine varies: less than 100 % a sample, wherever the disk is.
+        assert!(relative < 1.0 / 100_000_f64.sqrt(), "{relative}");
+        let behind = Light::Disk(disk(center, UnitVec3::Y, radius));
         assert!(behind.sample(Vec3::ZERO, Vec2::splat(0.3)).is_none());
     }
 }
 
 #[test]
-fn a_sphere_gives_the_irradiance_of_its_closed_form() {
-    for (radius, distance, angle) in [
-        (1.0, 3.0, 0.0),
-        (1.0, 3.0, 1.0),
-        (1.0, 1.0001, 0.0),
-        (1e-3, 5.0, 1.2),
-        (1e-9, 1e3, 0.5),
-        (1e12, 4e12, 0.7),
-    ] {
-        let (sin, cos) = f64::sin_cos(angle);
-        let center = DVec3::new(sin, cos, 0.0) * distance;
-        let light = Light::Sphere(sphere(center.as_vec3(), radius as f32));
-        let exact =
-            PI * (f64::from(radius as f32) / center.as_vec3().as_dvec3().length()).powi(2) * cos;
-        let measured = irradiance(&light, Vec3::ZERO, UnitVec3::Y, 200_000);
-        measured.assert_mean(exact, &format!("R {radius}, d {distance}, {angle} rad"));
-    }
-    for point in [Vec3::ZERO, Vec3::new(0.3, 0.9, 0.1), Vec3::NEG_X] {
-        let inside = Light::Sphere(sphere(Vec3::ZERO, 1.0));
-        let measured = irradiance(&inside, point, UnitVec3::Y, 200_000);
-        measured.assert_mean(PI, &format!("inside at {point}"));
-    }
-}
-
-#[test]
-fn a_rectangle_gives_the_irradiance_of_lamberts_sum() {
-    let x = |s: f32| Vec3::new(s, 0.0, 0.0);
-    let z = |s: f32| Vec3::new(0.0, 0.0, s);
-    let up = |h: f32| Vec3::new(0.0, h, 0.0);
-    for (center, half_u, half_v) in [
-        (up(3.0), x(1.0), z(0.5)),
-        (up(3.0) + x(2.0), x(1.0), z(0.5)),
-        (up(0.01) + x(0.4), x(1.0), z(1.0)),
-        (up(1.0), x(1e5), z(1e4)),
-        (up(3.0), x(1.0), z(1e-5)),
-        (up(3e4), x(1.0), z(0.5)),
-        // A wall, seen edge-on but for a little.
-        (up(2.0) + x(1e-3), up(1.0), z(1.0)),
-        // Tilted.
-        (up(3.0), Vec3::new(0.8, 0.6, 0.0), z(1.0)),
-        // Parallelograms.
-        (up(3.0), x(1.0), z(0.5) + x(0.7)),
-        (up(2.0) + x(1.0), Vec3::new(0.8, 0.6, 0.3), z(1.0)),
-        (up(3e15), x(1e15), z(1e15)),
-        (up(3e-15), x(1e-15), z(1e-15)),
-    ] {
-        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
-            .map(|(u, v)| center.as_dvec3() + u * half_u.as_dvec3() + v * half_v.as_dvec3());
-        let exact = polygon_irradiance(&corners, DVec3::Y);
-        // Whichever order of the edges makes it shine to the origin.
-        let faces = half_u.cross(half_v).dot(center) < 0.0;
-        let (u, v) = if faces {
-            (half_u, half_v)
-        } else {
-            (half_v, half_u)
-        };
+fn a_rectangle_shines_to_one_side() {
+    let center = Vec3::new(0.3, 2.0, 0.1);
+    let sample = |u, v| {
         let light = Light::Rectangle(rectangle(center, u, v));
-        let measured = irradiance(&light, Vec3::ZERO, UnitVec3::Y, 200_000);
-        let relative = measured.standard_error() / exact;
-        println!(
-            "rectangle {center} {half_u} {half_v}: E {exact:.6e}, standard error {relative:.1e}"
-        );
-        // Lambert's sum itself cancels for a rectangle far away.
-        let slack = 4.0 * measured.standard_error() + 1e-6 * exact + 1e-16;
-        assert!(
-            (measured.mean() - exact).abs() < slack,
-            "{center}: {} for {exact}",
-            measured.mean()
-        );
-        let back = Light::Rectangle(rectangle(center, v, u));
-        assert!(back.sample(Vec3::ZERO, Vec2::splat(0.3)).is_none());
-    }
+        light.sample(Vec3::ZERO, Vec2::splat(0.3))
+    };
+    assert!(sample(Vec3::X, Vec3::Z).is_some());
+    assert!(sample(Vec3::Z, Vec3::X).is_none());
 }
 
 /// The stated irradiance on a facing surface, its cosine on a tilted one; exact in every sample

@@ -32,7 +32,7 @@ fn settings_are_read() {
     let imported = scene(
         "[film]\nsize = [320, 200]\n\
          [sampling]\nsamples = 9\npattern = \"jittered\"\ntarget = \"circle\"\nseed = 18446744073709551615\n\
-         [integrator]\nkind = \"depth\"\nmax_depth = 3\n\
+         [integrator]\nkind = \"depth\"\nmax_depth = 3\nshadow_terminator = false\n\
          [background]\nradiance = [0.5, 0.7, 1.0]\nambient = [0.1, 0.2, 0.3]\n",
     )
     .unwrap();
@@ -46,6 +46,7 @@ fn settings_are_read() {
         },
         integrator: IntegratorKind::Depth,
         max_depth: 3,
+        shadow_terminator: false,
         ..Settings::default()
     };
     assert_eq!(imported.settings, expected);

@@ -44,7 +44,7 @@ const MISTAKES: &[(&str, usize, &[&str])] = &[
     (
         "[integrator]\ndepth = 3\n",
         2,
-        &["\"depth\"", "kind, max_depth"],
+        &["\"depth\"", "kind, max_depth, shadow_terminator"],
     ),
     (
         "[[model]]\nfile = \"triangle.obj\"\nrotation = [0, 0, 0]\n",

@@ -45,6 +45,7 @@
 //! |---|---|---|---|
 //! | `kind` | `"whitted"`, `"normal"`, `"depth"`, `"albedo"` | `"whitted"` | how light is followed, or what else is shown |
 //! | `max_depth` | 1 to 1,024 | 8 | scattering events of a path; 1 is direct light only |
+//! | `shadow_terminator` | `true`, `false` | `true` | whether shadow rays start on the smooth surface that vertex normals describe, so that no facets show where light ends |
 //!
 //! # `[background]`
 //!

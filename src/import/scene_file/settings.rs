@@ -19,7 +19,7 @@ pub fn read(root: &Section) -> Result<Settings, ImportError> {
         settings.sampling = sampling(value)?;
     }
     if let Some(value) = root.value("integrator") {
-        let keys = &["kind", "max_depth"];
+        let keys = &["kind", "max_depth", "shadow_terminator"];
         let section = Section::new(root.source, value.node, "[integrator]", keys)?;
         settings.integrator = section
             .get("kind", integrator)?
@@ -27,6 +27,9 @@ pub fn read(root: &Section) -> Result<Settings, ImportError> {
         settings.max_depth = section
             .get("max_depth", |v| v.integer_u32(1, MAX_DEPTH))?
             .unwrap_or(settings.max_depth);
+        settings.shadow_terminator = section
+            .get("shadow_terminator", |v| v.boolean())?
+            .unwrap_or(settings.shadow_terminator);
     }
     Ok(settings)
 }

@@ -29,7 +29,7 @@ enum Place {
 pub fn run(effort: Effort) -> Vec<Check> {
     let exponents: Vec<i32> = match effort {
         Effort::Short => vec![0, 3, 6, 9],
-        Effort::Full => (0..=9).collect(),
+        Effort::Full { .. } => (0..=9).collect(),
     };
     [
         (Place::Obj, "OBJ coordinates"),

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::bench::Triangles;
 use crate::bvh::{Builder, Bvh};
-use crate::math::{Ray, Vec3};
+use crate::math::{Mat3, Ray, Vec3};
 use crate::stress::meshes::{Random, sphere};
 use crate::stress::{Check, Effort};
 
@@ -32,10 +32,11 @@ pub fn run(effort: Effort) -> Vec<Check> {
         ),
         escapes("flat and needle-shaped bodies", &flat),
         escapes("boxes with T-junctions", &boxes),
+        escapes("large triangles that meet small ones", &divided()),
         fan(),
     ];
-    if effort == Effort::Full {
-        checks.push(many(50_000_000));
+    if let Effort::Full { rays } = effort {
+        checks.push(many(rays));
     }
     checks
 }
@@ -123,6 +124,28 @@ fn box_with_t_junctions() -> Triangles {
     mesh
 }
 
+/// Slanted triangles of all sizes, which spatial splits cut: a turned icosahedron, some of whose triangles are divided
+/// again and again; seen from its middle and aside, at three scales.
+fn divided() -> Vec<(Triangles, Vec3)> {
+    let turn = Mat3::from_rotation_x(0.3) * Mat3::from_rotation_z(0.7);
+    let mut mesh = sphere(0);
+    for round in 0..600 {
+        let at = mesh.indices.len() - 1 - round % 3;
+        let [a, b, c] = mesh.corners(at);
+        let [i, j, k] = mesh.indices[at];
+        let new = mesh.positions.len() as u32;
+        mesh.positions.push((a + b + c) / 3.0);
+        mesh.indices[at] = [i, j, new];
+        mesh.indices.extend([[j, k, new], [k, i, new]]);
+    }
+    let scaled = [1e-6, 1.0, 1e6].map(|scale| {
+        let mesh = mesh.clone().map(|p| scale * (turn * p));
+        let aside = scale * Vec3::new(0.3, -0.2, 0.4);
+        [(mesh.clone(), Vec3::ZERO), (mesh, aside)]
+    });
+    scaled.into_iter().flatten().collect()
+}
+
 /// A double cone: 100,000 triangles meet at each tip.
 fn fan() -> Check {
     const SIDES: u32 = 100_000;
@@ -155,8 +178,7 @@ fn fan() -> Check {
     Check::none(what, escaped.count() as u64)
 }
 
-/// `rays` rays in each of the twenty places of spheres, to random points of edges and, every fourth,
-/// to vertices.
+/// About `rays` rays in the twenty places of spheres, to random points of edges and, every fourth, to vertices.
 fn many(rays: u64) -> Check {
     const BATCH: u64 = 1 << 16;
     let scales = [1e-6, 1e-3, 1.0, 1e3, 1e6f32];
@@ -165,6 +187,7 @@ fn many(rays: u64) -> Check {
         .iter()
         .flat_map(|&s| shifts.map(|o| (s, o)))
         .collect();
+    let batches = rays.div_ceil(BATCH * places.len() as u64);
     let escaped: u64 = places
         .iter()
         .map(|&(scale, shift)| {
@@ -184,10 +207,10 @@ fn many(rays: u64) -> Check {
                 });
                 escaped.count() as u64
             };
-            (0..rays / BATCH).into_par_iter().map(batch).sum::<u64>()
+            (0..batches).into_par_iter().map(batch).sum::<u64>()
         })
         .sum();
-    let total = (rays / BATCH * BATCH) as usize * places.len();
+    let total = batches * BATCH * places.len() as u64;
     let what =
         format!("edges and vertices of spheres, 5 scales, 4 offsets: escapes of {total} rays");
     Check::none(what, escaped)
