@@ -5,7 +5,12 @@
 
 mod defaults;
 mod files;
+mod hostile;
 mod meaning;
 mod mistakes;
 mod models;
 mod overrides;
+
+/// What the fuzz targets do with hostile files.
+#[path = "../../fuzz/src/lib.rs"]
+mod targets;

@@ -1,0 +1,4 @@
+//! Binary glTF.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| halfshade_fuzz::model("glb", bytes));

@@ -1,0 +1,4 @@
+//! MTL libraries.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| halfshade_fuzz::library(bytes));
