@@ -50,7 +50,7 @@ pub fn run(effort: Effort) -> Vec<Check> {
         Check::at_most(
             "20 rows, 8 meridians: error at the terminator, over that of shadow rays from the facets",
             with / without,
-            0.1,
+            0.2,
         )
         .noted(format!(
             "RMSE within 12 degrees of it, of full light: {with:.1e} and {without:.1e}"
