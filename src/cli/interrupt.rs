@@ -35,6 +35,12 @@ impl Interrupt {
         &self.is_requested
     }
 
+    /// From now on, until [`Interrupt::rendering_begins`], there is nothing to save.
+    pub fn rendering_is_ahead(&self) {
+        self.is_rendering.store(false, Ordering::SeqCst);
+        self.is_complete.store(false, Ordering::SeqCst);
+    }
+
     /// From now on there is something to save.
     pub fn rendering_begins(&self) {
         self.is_rendering.store(true, Ordering::SeqCst);

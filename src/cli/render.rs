@@ -1,5 +1,6 @@
 //! `halfshade render`: scene to picture.
 
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use halfshade::camera::Camera;
@@ -28,6 +29,20 @@ use super::targets::Targets;
 /// Does what the options say.
 pub fn run(options: &RenderOptions) -> Result<(), Failure> {
     let interrupt = Interrupt::listen();
+    let Some(frames) = &options.sequence.frames else {
+        return run_one(options, &interrupt);
+    };
+    for frame in frames.all() {
+        interrupt.rendering_is_ahead();
+        run_one(&options.of_frame(frame), &interrupt)?;
+        if interrupt.is_requested().load(Ordering::SeqCst) {
+            return Err(Failure::Interrupted);
+        }
+    }
+    Ok(())
+}
+
+fn run_one(options: &RenderOptions, interrupt: &Interrupt) -> Result<(), Failure> {
     // All that can be wrong before the work begins.
     let targets = match options.work.replay {
         None => Some(Targets::of(options)?),
@@ -37,7 +52,7 @@ pub fn run(options: &RenderOptions) -> Result<(), Failure> {
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()?;
-    pool.install(|| run_on_pool(options, targets.as_ref(), &interrupt))
+    pool.install(|| run_on_pool(options, targets.as_ref(), interrupt))
 }
 
 fn run_on_pool(

@@ -8,6 +8,7 @@ mod help;
 #[cfg(unix)]
 mod interrupt;
 mod limits;
+mod sequence;
 mod terminal;
 
 use std::fs;

@@ -83,6 +83,7 @@ fn scene(
     let import_options = ImportOptions {
         is_strict: options.is_strict,
         reads_unused_meshes: options.keep.contains(Omission::Meshes),
+        pose: options.pose.as_ref(),
     };
     let mut models = Models::new(source, import_options, materials);
     for node in root.list("model")? {

@@ -142,7 +142,7 @@ mod value;
 
 use std::path::Path;
 
-use super::{ImportError, Imported};
+use super::{ImportError, Imported, Pose};
 use crate::camera::Camera;
 use crate::math::DVec3;
 use crate::scene::{Keep, Needs, Placed};
@@ -160,6 +160,8 @@ pub struct SceneOptions {
     pub overrides: Vec<(String, String)>,
     /// The name of the camera to look through; `None` for what the file says.
     pub camera: Option<String>,
+    /// The moment of its animations that is shown; `None` for all models at rest.
+    pub pose: Option<Pose>,
     /// What layers beside the picture read.
     pub layers: Needs,
     /// What is kept though neither the integrator of the settings nor the layers read it: by

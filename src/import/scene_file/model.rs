@@ -39,7 +39,7 @@ struct Loaded {
 /// Puts models into a scene, each file imported once.
 pub struct Models<'a> {
     source: &'a Source,
-    options: ImportOptions,
+    options: ImportOptions<'a>,
     /// The materials of the scene file, which are the first of the scene.
     own_materials: Vec<Material>,
     loaded: BTreeMap<PathBuf, Loaded>,
@@ -51,7 +51,11 @@ pub struct Models<'a> {
 
 impl<'a> Models<'a> {
     /// No models yet; `own_materials` are those that the scene file names.
-    pub fn new(source: &'a Source, options: ImportOptions, own_materials: Vec<Material>) -> Self {
+    pub fn new(
+        source: &'a Source,
+        options: ImportOptions<'a>,
+        own_materials: Vec<Material>,
+    ) -> Self {
         Self {
             source,
             options,
