@@ -107,10 +107,13 @@ pub mod output;
 
 pub mod bench;
 
+#[cfg(feature = "report")]
 pub mod report;
 
+#[cfg(feature = "report")]
 pub mod converge;
 
+#[cfg(feature = "report")]
 pub mod stress;
 
 /// Compiles and runs the example of the README.

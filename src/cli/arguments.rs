@@ -77,6 +77,39 @@ pub fn assignment(text: &str) -> Result<(String, String), String> {
     }
 }
 
+/// A number of seconds; there are some before an animation's start, too.
+pub fn seconds(text: &str) -> Result<f64, String> {
+    let number: Option<f64> = text.trim().parse().ok();
+    number
+        .filter(|number| number.is_finite())
+        .ok_or_else(|| "not a number".to_owned())
+}
+
+/// Frames of a sequence, the first and the last of them.
+#[derive(Clone, Copy, Debug)]
+pub struct Frames {
+    first: u32,
+    last: u32,
+}
+
+impl Frames {
+    /// Their numbers.
+    pub fn all(self) -> impl Iterator<Item = u32> {
+        self.first..=self.last
+    }
+}
+
+/// `A..B`: the first and the last frame.
+pub fn frames(text: &str) -> Result<Frames, String> {
+    let ends = text.trim().split_once("..");
+    let ends = ends.and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
+    match ends {
+        Some((first, last)) if first <= last => Ok(Frames { first, last }),
+        Some(_) => Err("the last frame comes before the first".to_owned()),
+        None => Err("not two numbers like 0..47".to_owned()),
+    }
+}
+
 /// A number above 0.
 pub fn positive(text: &str) -> Result<f64, String> {
     let number: Option<f64> = text.trim().parse().ok();

@@ -316,7 +316,7 @@ fn told_settings(
         ("max_depth".to_owned(), settings.max_depth.to_string()),
         ("bvh".to_owned(), options.bvh.name().to_owned()),
     ];
-    let set = options.scene.set.iter();
+    let set = options.scene.reading.set.iter();
     told.extend(set.map(|(path, value)| ("set".to_owned(), format!("{path}={value}"))));
     told
 }

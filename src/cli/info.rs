@@ -1,6 +1,7 @@
 //! `halfshade info`: what is in a scene.
 
 use std::fmt::{self, Display};
+use std::path::PathBuf;
 
 use clap::Args;
 use halfshade::bvh::Builder;
@@ -14,9 +15,11 @@ use serde::Serialize;
 
 use super::Failure;
 use super::console::{Bytes, print, printable};
+#[cfg(feature = "gltf")]
+use super::extensions::run as list_extensions;
 use super::left_out::LeftOutLine;
 use super::measure::measure;
-use super::options::{KeepOptions, SceneArguments};
+use super::options::{KeepOptions, ReadingOptions};
 
 /// Print what is in a scene or model, what was ignored or repaired, and what is left out
 #[derive(Args, Debug)]
@@ -24,16 +27,23 @@ use super::options::{KeepOptions, SceneArguments};
 Examples:
   halfshade info scenes/house.toml
   halfshade info bunny.obj --json
+  halfshade info --extensions
   halfshade info models/house.glb --measure --set integrator.kind=depth
       what a depth picture does not need, and what time and memory that saves")]
 pub struct InfoOptions {
+    /// A scene file (.toml), or a model by itself (.gltf, .glb, .obj)
+    #[arg(required_unless_present = "extensions")]
+    scene: Option<PathBuf>,
     #[command(flatten)]
-    scene: SceneArguments,
+    reading: ReadingOptions,
     #[command(flatten)]
     keep: KeepOptions,
     /// Measure the time that is saved: imports, prepares and renders the scene small, several times
     #[arg(long)]
     measure: bool,
+    /// Print what becomes of each extension of glTF, as a page of Markdown, and nothing else
+    #[arg(long, conflicts_with = "scene")]
+    extensions: bool,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -41,14 +51,17 @@ pub struct InfoOptions {
 
 /// Does what the options say.
 pub fn run(options: &InfoOptions) -> Result<(), Failure> {
+    let Some(scene) = &options.scene else {
+        return list_extensions(options.json);
+    };
     let keep = options.keep.keep();
-    let mut import_options = options.scene.import_options();
+    let mut import_options = options.reading.import_options();
     import_options.keep = keep;
-    let imported = import(&options.scene.scene, &import_options)
-        .map_err(|error| Failure::of_import("info", &error))?;
+    let imported =
+        import(scene, &import_options).map_err(|error| Failure::of_import("info", &error))?;
     let mut info = Info::of(&imported, keep);
     if options.measure {
-        measure(&options.scene.scene, &import_options, &mut info.left_out)
+        measure(scene, &import_options, &mut info.left_out)
             .map_err(|error| Failure::of_import("info", &error))?;
     }
     if options.json {
@@ -56,11 +69,19 @@ pub fn run(options: &InfoOptions) -> Result<(), Failure> {
         print(json)
     } else {
         print(printable(Table {
-            name: options.scene.scene.display().to_string(),
+            name: scene.display().to_string(),
             info: &info,
             imported: &imported,
         }))
     }
+}
+
+/// Without glTF there are none.
+#[cfg(not(feature = "gltf"))]
+fn list_extensions(_: bool) -> Result<(), Failure> {
+    Err(Failure::job(
+        "glTF (feature \"gltf\" of this build) is not supported",
+    ))
 }
 
 /// What scripts may rely on; more keys may come to stand beside these.

@@ -42,7 +42,13 @@ pub fn metadata(
     if let Some(error) = film.error() {
         metadata.push(("estimated_relative_rmse", error.estimate.to_string()));
     }
-    for (path, value) in &scene.set {
+    if let Some(seconds) = scene.reading.time_code {
+        metadata.push(("time_code", seconds.to_string()));
+    }
+    if let Some(animation) = &scene.reading.animation {
+        metadata.push(("animation", animation.clone()));
+    }
+    for (path, value) in &scene.reading.set {
         metadata.push(("set", format!("{path}={value}")));
     }
     metadata

@@ -4,19 +4,28 @@
 //! job failed, 2 the arguments are wrong.
 
 mod arguments;
+#[cfg(feature = "report")]
 mod bench;
+#[cfg(feature = "report")]
 mod compare;
+#[cfg(feature = "report")]
 mod comparison;
 mod console;
+#[cfg(feature = "report")]
 mod converge;
+#[cfg(feature = "report")]
 mod curve_tables;
+#[cfg(feature = "report")]
 mod difference;
+#[cfg(feature = "gltf")]
+mod extensions;
 mod failure;
 mod info;
 mod interrupt;
 mod layers;
 mod left_out;
 mod limits;
+#[cfg(feature = "report")]
 mod machine;
 mod measure;
 mod memory;
@@ -27,9 +36,11 @@ mod process;
 mod progress;
 mod render;
 mod stats;
+#[cfg(feature = "report")]
 mod stress;
 mod table;
 mod targets;
+#[cfg(feature = "report")]
 mod threshold;
 
 use clap::{Parser, Subcommand};
@@ -54,9 +65,13 @@ pub struct Arguments {
 enum Command {
     Render(Box<options::RenderOptions>),
     Info(info::InfoOptions),
+    #[cfg(feature = "report")]
     Compare(compare::CompareOptions),
+    #[cfg(feature = "report")]
     Converge(Box<converge::ConvergeOptions>),
+    #[cfg(feature = "report")]
     Bench(bench::BenchOptions),
+    #[cfg(feature = "report")]
     Stress(stress::StressOptions),
 }
 
@@ -65,9 +80,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.command {
         Command::Render(arguments) => render::run(arguments),
         Command::Info(arguments) => info::run(arguments),
+        #[cfg(feature = "report")]
         Command::Compare(arguments) => compare::run(arguments),
+        #[cfg(feature = "report")]
         Command::Converge(arguments) => converge::run(arguments),
+        #[cfg(feature = "report")]
         Command::Bench(arguments) => bench::run(arguments),
+        #[cfg(feature = "report")]
         Command::Stress(arguments) => stress::run(arguments),
     }
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use halfshade::bvh::Builder;
 use halfshade::film::Rect;
-use halfshade::import::SceneOptions;
+use halfshade::import::{Pose, SceneOptions};
 use halfshade::integrate::Aov;
 use halfshade::math::UVec2;
 use halfshade::sampling::{Pattern, Target};
@@ -13,10 +13,11 @@ use halfshade::scene::{
     IntegratorKind, Keep, MAX_DEPTH, MAX_LIGHT_SAMPLES, MAX_SAMPLES, Needs, Settings, ToneMap,
 };
 
-use super::arguments::{self, Exposure, SampleId};
+use super::arguments::{self, Exposure, Frames, SampleId};
 use super::console::Console;
 use super::layers::{GUIDES, LayerKind};
 use super::names::{self, one_of};
+use super::targets;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -30,17 +31,21 @@ Examples:
       the best picture that ten seconds give
   halfshade render bunny.obj --orbit 36 --transparent --exposure auto -o bunny.png
       36 pictures from all around, bunny.0001.png and so on, of the bunny alone
+  halfshade render walk.glb --frames 0..23 -o walk.png
+      a second: walk.0000.png to walk.0023.png
   halfshade render scenes/house.toml --set light.0.angle=0 --crop 100,50,64,64 -o part.exr
       a hard shadow of the sun
 
 Ctrl-C ends the render and saves what there is, with exit status 1.";
 
 /// Render a scene to PNG and EXR files
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct RenderOptions {
     #[command(flatten)]
     pub scene: SceneArguments,
+    #[command(flatten)]
+    pub sequence: SequenceOptions,
     #[command(flatten)]
     pub picture: PictureOptions,
     #[command(flatten)]
@@ -56,10 +61,17 @@ pub struct RenderOptions {
 }
 
 /// What is read.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub struct SceneArguments {
     /// A scene file (.toml), or a model by itself (.gltf, .glb, .obj)
     pub scene: PathBuf,
+    #[command(flatten)]
+    pub reading: ReadingOptions,
+}
+
+/// How it is read.
+#[derive(Args, Clone, Debug)]
+pub struct ReadingOptions {
     /// Change a key of the scene file, like light.0.angle=0; may be given again
     #[arg(long, value_name = "PATH=VALUE", value_parser = arguments::assignment)]
     pub set: Vec<(String, String)>,
@@ -72,6 +84,24 @@ pub struct SceneArguments {
     /// Refuse files that require an extension that is not known
     #[arg(long)]
     pub strict: bool,
+    /// Show animated models at this time after their start [default: at rest]
+    #[arg(long, value_name = "SECONDS", group = "moment", value_parser = arguments::seconds)]
+    pub time_code: Option<f64>,
+    /// Which animation, by its name or its number in the file, counted from 0 [default: the first]
+    #[arg(long, value_name = "NAME", requires = "moment")]
+    pub animation: Option<String>,
+}
+
+/// Many pictures of animated models.
+#[derive(Args, Clone, Copy, Debug)]
+#[command(next_help_heading = "Sequence")]
+pub struct SequenceOptions {
+    /// Render these frames, first to last, to numbered files like name.0001.png; frame 0 is the start
+    #[arg(long, value_name = "A..B", group = "moment", conflicts_with = "replay", value_parser = arguments::frames)]
+    pub frames: Option<Frames>,
+    /// Frames per second
+    #[arg(long, value_name = "N", default_value_t = 24.0, requires = "frames", value_parser = arguments::positive)]
+    pub fps: f64,
 }
 
 /// Whether anything is left out.
@@ -94,7 +124,7 @@ impl KeepOptions {
 }
 
 /// What is seen.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Picture")]
 pub struct PictureOptions {
     /// Pixels across and down [default: the scene's, or 1280x720]
@@ -127,7 +157,7 @@ pub struct PictureOptions {
 }
 
 /// How it is sampled.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Sampling")]
 pub struct SamplingOptions {
     /// Camera samples per pixel; under a limit the most on average [default: the scene's, or 64]
@@ -148,7 +178,7 @@ pub struct SamplingOptions {
 }
 
 /// When it ends, and where the samples go.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Limits")]
 pub struct LimitOptions {
     /// Stop so that the picture is saved this many seconds after the start, as good as it is then
@@ -178,7 +208,7 @@ impl LimitOptions {
 }
 
 /// How the work is done; the picture does not depend on it.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Work")]
 pub struct WorkOptions {
     /// Threads [default: one for each core]
@@ -201,7 +231,7 @@ pub struct WorkOptions {
 }
 
 /// What is written.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Output")]
 pub struct OutputOptions {
     /// A .png or .exr file; may be given again [default: the scene's name with .png, in this folder]
@@ -230,6 +260,13 @@ pub struct OutputOptions {
 impl SceneArguments {
     /// How the scene is imported.
     pub fn import_options(&self) -> SceneOptions {
+        self.reading.import_options()
+    }
+}
+
+impl ReadingOptions {
+    /// How the scene is imported.
+    pub fn import_options(&self) -> SceneOptions {
         let mut overrides = self.set.clone();
         if let Some(file) = &self.environment {
             // In a scene file paths are relative to its folder.
@@ -242,6 +279,10 @@ impl SceneArguments {
             is_strict: self.strict,
             variant: self.variant.clone(),
             overrides,
+            pose: self.time_code.map(|seconds| Pose {
+                seconds,
+                animation: self.animation.clone(),
+            }),
             ..SceneOptions::default()
         }
     }
@@ -266,6 +307,21 @@ impl RenderOptions {
         if let Some(integrator) = self.picture.integrator {
             let kind = format!("{:?}", integrator.name());
             options.overrides.push(("integrator.kind".to_owned(), kind));
+        }
+        options
+    }
+
+    /// The options of one frame of the sequence.
+    pub fn of_frame(&self, frame: u32) -> Self {
+        let mut options = self.clone();
+        options.scene.reading.time_code = Some(f64::from(frame) / self.sequence.fps);
+        if options.output.output.is_empty() {
+            let name = targets::default_output(&self.scene.scene);
+            options.output.output.push(name);
+        }
+        let outputs = options.output.output.iter_mut();
+        for path in outputs.chain(&mut options.output.stats) {
+            *path = targets::numbered(path, frame);
         }
         options
     }

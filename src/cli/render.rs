@@ -3,6 +3,7 @@
 use std::env;
 use std::f32::consts::TAU;
 use std::path::PathBuf;
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use halfshade::camera::Camera;
@@ -37,6 +38,20 @@ const LEAK_RAYS: u64 = 200_000;
 /// Does what the options say.
 pub fn run(options: &RenderOptions) -> Result<(), Failure> {
     let interrupt = Interrupt::listen();
+    let Some(frames) = &options.sequence.frames else {
+        return run_one(options, &interrupt);
+    };
+    for frame in frames.all() {
+        interrupt.rendering_is_ahead();
+        run_one(&options.of_frame(frame), &interrupt)?;
+        if interrupt.is_requested().load(Ordering::SeqCst) {
+            return Err(Failure::Interrupted);
+        }
+    }
+    Ok(())
+}
+
+fn run_one(options: &RenderOptions, interrupt: &Interrupt) -> Result<(), Failure> {
     // All that can be wrong before the work begins.
     let targets = match options.work.replay {
         None => Some(Targets::of(options)?),
@@ -46,7 +61,7 @@ pub fn run(options: &RenderOptions) -> Result<(), Failure> {
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()?;
-    pool.install(|| run_on_pool(options, targets.as_ref(), &interrupt))
+    pool.install(|| run_on_pool(options, targets.as_ref(), interrupt))
 }
 
 fn run_on_pool(

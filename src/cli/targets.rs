@@ -159,6 +159,11 @@ fn images(options: &RenderOptions) -> Result<Vec<(PathBuf, ImageFormat)>, String
         let name = path.display();
         let format = ImageFormat::of_path(&path)
             .ok_or_else(|| format!("{name}: pictures are written as .png or .exr"))?;
+        if let Some(feature) = format.needed_feature() {
+            return Err(format!(
+                "{name}: this build cannot write it: it lacks the feature \"{feature}\""
+            ));
+        }
         images.push((path, format));
     }
     Ok(images)
@@ -247,7 +252,7 @@ fn check_combination(
 }
 
 /// The scene's name with `.png`, in the current folder.
-fn default_output(scene: &Path) -> PathBuf {
+pub fn default_output(scene: &Path) -> PathBuf {
     let name = scene.file_stem().unwrap_or(scene.as_os_str());
     let mut name = name.to_owned();
     name.push(".png");

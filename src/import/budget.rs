@@ -55,6 +55,12 @@ impl Budget {
         self.file_bytes.set(total);
     }
 
+    /// Bytes that may still be taken.
+    #[cfg(feature = "draco")]
+    pub fn left(&self) -> u64 {
+        self.left.get()
+    }
+
     /// Takes `bytes`.
     ///
     /// # Errors

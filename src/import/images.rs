@@ -1,4 +1,4 @@
-//! Encoded images (PNG, JPEG, WebP, TGA, BMP, GIF, Radiance HDR) to [`Image`]s.
+//! Encoded images (PNG, JPEG, WebP, TGA, BMP, GIF, Radiance HDR, KTX2) to [`Image`]s.
 //!
 //! Formats of more than 8 bits a channel that hold sRGB-encoded or plain numbers (16-bit PNG) are
 //! rounded to 8 bits, since [`Pixels::Rgba32F`] means linear values; HDR keeps its floats. The
@@ -9,6 +9,8 @@ use std::io::Cursor;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 
 use super::budget::Budget;
+#[cfg(feature = "ktx2")]
+use super::ktx2;
 use crate::texture::{Image, Pixels};
 
 /// Decoded bytes that any image may have, however small its file: 8192 × 8192 pixels.
@@ -37,20 +39,14 @@ pub fn decode_within(bytes: &[u8], name: &str, budget: &Budget) -> Result<Image,
 /// A sentence that begins with `name`. An image that would decode to more than 256 MiB and 64
 /// times its file is refused before memory is taken for it.
 pub fn decode(bytes: &[u8], name: &str) -> Result<Image, String> {
+    #[cfg(feature = "ktx2")]
+    if ktx2::is_ktx2(bytes) {
+        return decode_ktx2(bytes, name);
+    }
     let problem = |error: image::ImageError| format!("{name}: {error}");
     let mut decoder = decoder(bytes, name).map_err(problem)?;
-    let needed = pixel_bytes(&decoder);
-    let allowed = ALWAYS_ALLOWED_BYTES + ALLOWED_EXPANSION * bytes.len() as u64;
     let (width, height) = decoder.dimensions();
-    if needed > allowed {
-        return Err(format!(
-            "{name}: {width} × {height} pixels are too many for a file of {} bytes",
-            bytes.len()
-        ));
-    }
-    if needed == 0 {
-        return Err(format!("{name}: has no pixels"));
-    }
+    let allowed = check_size(bytes, name, (width, height), pixel_bytes(&decoder))?;
     let mut limits = Limits::default();
     // Decoders keep a copy in their own pixel format, up to twice as deep as ours.
     limits.max_alloc = Some(4 * allowed);
@@ -64,11 +60,51 @@ pub fn decode(bytes: &[u8], name: &str) -> Result<Image, String> {
     })
 }
 
+#[cfg(feature = "ktx2")]
+fn decode_ktx2(bytes: &[u8], name: &str) -> Result<Image, String> {
+    let problem = |what: String| format!("{name}: {what}");
+    let (width, height) = ktx2::size(bytes).map_err(problem)?;
+    let needed = 4 * u64::from(width) * u64::from(height);
+    check_size(bytes, name, (width, height), needed)?;
+    let pixels = ktx2::decode(bytes).map_err(problem)?;
+    Ok(Image {
+        name: name.to_owned(),
+        width,
+        height,
+        pixels: Pixels::Rgba8(in_fours(pixels)),
+    })
+}
+
+/// How many bytes the pixels of a file may take, if that is no fewer than are `needed`.
+fn check_size(
+    bytes: &[u8],
+    name: &str,
+    (width, height): (u32, u32),
+    needed: u64,
+) -> Result<u64, String> {
+    let allowed = ALWAYS_ALLOWED_BYTES + ALLOWED_EXPANSION * bytes.len() as u64;
+    if needed > allowed {
+        return Err(format!(
+            "{name}: {width} × {height} pixels are too many for a file of {} bytes",
+            bytes.len()
+        ));
+    }
+    if needed == 0 {
+        return Err(format!("{name}: has no pixels"));
+    }
+    Ok(allowed)
+}
+
 /// Bytes of memory that the pixels will take, from the header alone.
 ///
 /// # Errors
 /// As for [`decode`].
 pub fn decoded_bytes(bytes: &[u8], name: &str) -> Result<u64, String> {
+    #[cfg(feature = "ktx2")]
+    if ktx2::is_ktx2(bytes) {
+        let size = ktx2::size(bytes).map_err(|what| format!("{name}: {what}"))?;
+        return Ok(4 * u64::from(size.0) * u64::from(size.1));
+    }
     decoder(bytes, name)
         .map(|decoder| pixel_bytes(&decoder))
         .map_err(|error| format!("{name}: {error}"))

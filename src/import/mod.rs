@@ -8,8 +8,12 @@ mod budget;
 mod census;
 mod environment;
 mod files;
+#[cfg(feature = "gltf")]
 mod gltf;
 mod images;
+#[cfg(feature = "ktx2")]
+mod ktx2;
+#[cfg(feature = "obj")]
 mod obj;
 pub mod scene_file;
 mod undecoded;
@@ -21,7 +25,9 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use crate::scene::{LeftOut, Scene, Settings};
+use crate::scene::{Keep, LeftOut, Needs, Scene, Settings};
+#[cfg(feature = "gltf")]
+pub use gltf::{ExtensionSupport, Support, extension_table};
 pub use scene_file::{Defaults, SceneOptions};
 use undecoded::Undecoded;
 pub use warning::{Warning, WarningCode, Warnings};
@@ -50,6 +56,17 @@ struct Model {
     left_out: Vec<LeftOut>,
 }
 
+/// A moment of an animation. Models without animations are always at rest.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Pose {
+    /// Time since the start of the animation. Before its first key and after its last it stands
+    /// still.
+    pub seconds: f64,
+    /// The name of the animation, or else its number in the file, counted from 0; `None` for the
+    /// first.
+    pub animation: Option<String>,
+}
+
 /// How to import.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ImportOptions<'a> {
@@ -59,6 +76,8 @@ pub struct ImportOptions<'a> {
     pub reads_unused_meshes: bool,
     /// The variant of its materials that is shown; `None` for the default one.
     pub variant: Option<&'a str>,
+    /// The moment that is shown; `None` for the model at rest.
+    pub pose: Option<&'a Pose>,
 }
 
 /// Why a file could not be imported: which file, where in it, what is wrong.
@@ -143,11 +162,41 @@ impl ImportError {
 }
 
 /// Imports a scene file (`.toml`), or a model by itself (`.gltf`, `.glb`, `.obj`), which is read as
-/// a scene file that names nothing else. A scene without a camera or lights gets some.
+/// a scene file that names nothing else. A scene without a camera or lights gets some; those of an
+/// animated scene stand still, where they are for the scene at rest.
 ///
 /// # Errors
 /// Where a file that it cannot do without cannot be read, or is not what its format demands.
 pub fn import(path: &Path, options: &SceneOptions) -> Result<Imported, ImportError> {
+    let mut imported = import_posed(path, options)?;
+    if options.pose.is_none() || imported.defaults.is_none() {
+        return Ok(imported);
+    }
+    let mut rest = SceneOptions {
+        pose: None,
+        keep: Keep::NOTHING,
+        layers: Needs::default(),
+        ..options.clone()
+    };
+    // So that no image is decoded for it.
+    let kind = ("integrator.kind".to_owned(), "\"depth\"".to_owned());
+    rest.overrides.push(kind);
+    let rest = import_posed(path, &rest)?;
+    if let (Some(moved), Some(still)) = (&mut imported.defaults, rest.defaults)
+        && (moved.cameras, moved.lights) == (still.cameras, still.lights)
+    {
+        if still.cameras > 0 {
+            imported.scene.cameras = rest.scene.cameras;
+        }
+        if still.lights > 0 {
+            imported.scene.lights = rest.scene.lights;
+        }
+        *moved = still;
+    }
+    Ok(imported)
+}
+
+fn import_posed(path: &Path, options: &SceneOptions) -> Result<Imported, ImportError> {
     match extension(path).as_str() {
         "toml" => scene_file::import_scene(path, options),
         _ if is_model(path) => scene_file::import_bare(path, options),
@@ -176,8 +225,20 @@ pub fn import_model(path: &Path, options: ImportOptions) -> Result<Imported, Imp
 /// As [`import_model`], without the pixels of its images.
 fn read_model(path: &Path, options: ImportOptions) -> Result<Model, ImportError> {
     match extension(path).as_str() {
+        #[cfg(feature = "gltf")]
         "gltf" | "glb" => gltf::import(path, options),
+        #[cfg(feature = "obj")]
         "obj" => obj::import(path),
+        #[cfg(not(all(feature = "gltf", feature = "obj")))]
+        "gltf" | "glb" | "obj" => {
+            let format = if extension(path) == "obj" {
+                "obj"
+            } else {
+                "gltf"
+            };
+            let what = format!("this format (feature \"{format}\" of this build)");
+            Err(ImportError::unsupported(path, what))
+        }
         _ => Err(ImportError::invalid(path, NOT_A_MODEL)),
     }
 }

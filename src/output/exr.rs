@@ -8,8 +8,11 @@
 use std::io::{self, BufWriter, Read, Seek, Write};
 use std::path::Path;
 
+#[cfg(feature = "exr")]
 use ::exr::meta::attribute::{AttributeValue, Chromaticities, IntegerBounds, Text};
+#[cfg(feature = "exr")]
 use ::exr::meta::header::{ImageAttributes, LayerAttributes};
+#[cfg(feature = "exr")]
 use ::exr::prelude::{
     AnyChannel, AnyChannels, Compression, Encoding, FlatSamples, Image, LineOrder, Vec2,
     WritableImage,
@@ -91,6 +94,7 @@ pub fn write(
 ///
 /// # Errors
 /// Where `file` fails, or the window or a name is not possible in an EXR file.
+#[cfg(feature = "exr")]
 pub fn encode(
     mut file: impl Read + Write + Seek,
     window: Window,
@@ -131,6 +135,18 @@ pub fn encode(
     sort_attributes(&mut file)
 }
 
+/// As above, of a build that cannot.
+#[cfg(not(feature = "exr"))]
+pub fn encode(
+    _: impl Write + Seek,
+    _: Window,
+    _: &[Layer],
+    _: &[(&str, String)],
+) -> io::Result<()> {
+    Err(super::not_built(super::ImageFormat::Exr))
+}
+
+#[cfg(feature = "exr")]
 fn channels<'a>(layer: &Layer<'a>) -> Vec<io::Result<AnyChannel<FlatSamples>>> {
     let channel = |suffix: &str, samples: Vec<f32>| {
         let name = if layer.name.is_empty() {
@@ -158,6 +174,7 @@ fn channels<'a>(layer: &Layer<'a>) -> Vec<io::Result<AnyChannel<FlatSamples>>> {
     }
 }
 
+#[cfg(feature = "exr")]
 fn image_attributes(window: Window, metadata: &[(&str, String)]) -> io::Result<ImageAttributes> {
     let mut attributes =
         ImageAttributes::new(IntegerBounds::new(Vec2(0, 0), dimensions(window.picture)));
@@ -182,6 +199,7 @@ fn image_attributes(window: Window, metadata: &[(&str, String)]) -> io::Result<I
 }
 
 /// EXR's text is of one byte a character; what does not fit becomes `?`.
+#[cfg(feature = "exr")]
 fn text(string: &str) -> io::Result<Text> {
     let latin: String = string
         .chars()
@@ -190,15 +208,18 @@ fn text(string: &str) -> io::Result<Text> {
     Text::new_or_none(latin).ok_or_else(|| io::Error::other("a name does not fit into an EXR file"))
 }
 
+#[cfg(feature = "exr")]
 fn dimensions(size: UVec2) -> Vec2<usize> {
     Vec2(size.x as usize, size.y as usize)
 }
 
+#[cfg(feature = "exr")]
 fn position(corner: UVec2) -> io::Result<Vec2<i32>> {
     let coordinate = |c: u32| i32::try_from(c).map_err(io::Error::other);
     Ok(Vec2(coordinate(corner.x)?, coordinate(corner.y)?))
 }
 
+#[cfg(feature = "exr")]
 fn io_error(error: ::exr::error::Error) -> io::Error {
     match error {
         ::exr::error::Error::Io(error) => error,

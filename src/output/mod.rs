@@ -80,4 +80,20 @@ impl ImageFormat {
             _ => None,
         }
     }
+
+    /// The feature that this build lacks to write it; `None` where it can.
+    pub fn needed_feature(self) -> Option<&'static str> {
+        match self {
+            Self::Png if !cfg!(feature = "png") => Some("png"),
+            Self::Exr if !cfg!(feature = "exr") => Some("exr"),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(not(all(feature = "png", feature = "exr")))]
+fn not_built(format: ImageFormat) -> io::Error {
+    let feature = format.needed_feature().unwrap_or("");
+    let what = format!("the feature \"{feature}\" is not part of this build");
+    io::Error::new(io::ErrorKind::Unsupported, what)
 }

@@ -3,8 +3,12 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::{OutputError, tone_mapped, write_whole};
-use crate::color::{Rgb, linear_to_srgb};
+#[cfg(feature = "png")]
+use super::tone_mapped;
+use super::{OutputError, write_whole};
+use crate::color::Rgb;
+#[cfg(feature = "png")]
+use crate::color::linear_to_srgb;
 use crate::math::UVec2;
 use crate::scene::ToneMap;
 
@@ -61,6 +65,7 @@ pub fn write(
 ///
 /// # Errors
 /// Where `writer` fails, or `size` has no pixels.
+#[cfg(feature = "png")]
 pub fn encode(
     writer: impl Write,
     size: UVec2,
@@ -103,12 +108,26 @@ pub fn encode(
     header.finish().map_err(io_error)
 }
 
+/// As above, of a build that cannot.
+#[cfg(not(feature = "png"))]
+pub fn encode(
+    _: impl Write,
+    _: UVec2,
+    _: &[Rgb],
+    _: Option<&[f32]>,
+    _: PngOptions,
+) -> io::Result<()> {
+    Err(super::not_built(super::ImageFormat::Png))
+}
+
+#[cfg(feature = "png")]
 fn push(bytes: &mut Vec<u8>, encoded: Rgb, bits: PngBits) {
     for channel in encoded.channels() {
         push_level(bytes, channel, bits);
     }
 }
 
+#[cfg(feature = "png")]
 fn push_covered(bytes: &mut Vec<u8>, pixel: Rgb, alpha: f32, options: PngOptions) {
     let straight = if alpha > 0.0 {
         pixel / alpha
@@ -120,6 +139,7 @@ fn push_covered(bytes: &mut Vec<u8>, pixel: Rgb, alpha: f32, options: PngOptions
 }
 
 /// A level of what is in `[0, 1]`.
+#[cfg(feature = "png")]
 fn push_level(bytes: &mut Vec<u8>, value: f32, bits: PngBits) {
     match bits {
         PngBits::Eight => bytes.push((value * 255.0).round() as u8),
@@ -128,15 +148,18 @@ fn push_level(bytes: &mut Vec<u8>, value: f32, bits: PngBits) {
 }
 
 /// Exposure, tone map, sRGB curve; in `[0, 1]`.
+#[cfg(feature = "png")]
 fn encoded(pixel: Rgb, options: PngOptions) -> Rgb {
     let exposed = pixel * options.exposure_ev.exp2();
     tone_mapped(exposed, options.tone_map).map(|c| linear_to_srgb(c).clamp(0.0, 1.0))
 }
 
+#[cfg(feature = "png")]
 fn rec_709() -> ::png::SourceChromaticities {
     ::png::SourceChromaticities::new((0.3127, 0.3290), (0.64, 0.33), (0.30, 0.60), (0.15, 0.06))
 }
 
+#[cfg(feature = "png")]
 fn io_error(error: ::png::EncodingError) -> io::Error {
     match error {
         ::png::EncodingError::IoError(error) => error,

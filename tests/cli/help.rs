@@ -60,6 +60,9 @@ fn made_small(example: &[String]) -> Vec<&str> {
     while let Some(word) = words.next() {
         if matches!(word, "--size" | "--samples") {
             words.next();
+        } else if word == "--frames" {
+            words.next();
+            arguments.extend([word, "0..1"]);
         } else {
             arguments.push(word);
         }
@@ -81,6 +84,7 @@ fn the_examples_of_the_help_work() {
         fs::create_dir_all(copy.parent().unwrap()).unwrap();
         fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join(file), copy).unwrap();
     }
+    fs::copy(path.join("models/house.glb"), path.join("walk.glb")).unwrap();
     // Equal pictures are within every limit.
     for name in ["quick", "reference"] {
         for extension in ["png", "exr"] {
@@ -105,6 +109,7 @@ fn the_examples_of_the_help_work() {
         "bunny.png",
         "bunny.exr",
         "part.exr",
+        "walk.0001.png",
         "difference.png",
         "difference.html",
     ] {

@@ -9,6 +9,7 @@ mod help;
 mod interrupt;
 mod limits;
 mod picture;
+mod sequence;
 mod terminal;
 mod verdict;
 

@@ -114,9 +114,18 @@ impl Doc {
 
 /// Imports a file with these bytes from a folder of its own.
 pub fn import_bytes(name: &str, bytes: &[u8]) -> Result<Imported, ImportError> {
+    import_bytes_with(name, bytes, ImportOptions::default())
+}
+
+/// As [`import_bytes`], in another way.
+pub fn import_bytes_with(
+    name: &str,
+    bytes: &[u8],
+    options: ImportOptions,
+) -> Result<Imported, ImportError> {
     let folder = tempfile::tempdir().unwrap();
     write(folder.path(), name, bytes);
-    import_model(&folder.path().join(name), ImportOptions::default())
+    import_model(&folder.path().join(name), options)
 }
 
 /// Writes a file.

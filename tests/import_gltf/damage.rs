@@ -237,6 +237,7 @@ fn random_changes_of_real_files_do_no_harm() {
         "MeshPrimitiveModes/glTF-Embedded/MeshPrimitiveModes.gltf",
         "RiggedSimple/glTF-Binary/RiggedSimple.glb",
         "BoxTextured/glTF-Embedded/BoxTextured.gltf",
+        "meshopt-loadersgl/BoxTextured_meshopt.glb",
     ] {
         let path = models.join("gltf").join(path);
         let name = path.file_name().unwrap().to_str().unwrap();

@@ -172,7 +172,7 @@ fn required_extensions_that_we_lack_are_warnings_or_in_strict_mode_errors() {
 }
 
 #[test]
-fn compressed_meshes_are_an_error_unless_there_is_a_plain_copy() {
+fn broken_compressed_data_are_an_error_unless_there_is_a_plain_copy() {
     let mut draco = Doc::triangle();
     draco.primitive()["extensions"] = json!({ "KHR_draco_mesh_compression": {} });
     draco.json["extensionsUsed"] = json!(["KHR_draco_mesh_compression"]);
@@ -181,19 +181,36 @@ fn compressed_meshes_are_an_error_unless_there_is_a_plain_copy() {
     assert!(imported.warnings.is_empty());
     let accessor = draco.json["accessors"][0].as_object_mut().unwrap();
     accessor.remove("bufferView");
-    let expected = ", mesh \"tail\", primitive 0: KHR_draco_mesh_compression is not supported";
-    assert_eq!(draco.error(), expected);
+    let expected = ", mesh \"tail\", primitive 0: KHR_draco_mesh_compression: ";
+    assert!(draco.error().starts_with(expected), "{}", draco.error());
+    let stream = draco.view(b"DRACO\x02\x02\x01\x01\0\0\xff\xff");
+    draco.primitive()["extensions"]["KHR_draco_mesh_compression"] =
+        json!({ "bufferView": stream, "attributes": { "POSITION": 0 } });
+    assert!(draco.error().starts_with(expected), "{}", draco.error());
 
     for name in ["EXT_meshopt_compression", "KHR_meshopt_compression"] {
         let mut meshopt = Doc::triangle();
-        meshopt.json["bufferViews"][0]["extensions"] = json!({ name: { "buffer": 0 } });
+        let stream = json!({
+            "buffer": 0, "byteLength": 36, "byteStride": 12, "count": 3, "mode": "ATTRIBUTES"
+        });
+        meshopt.json["bufferViews"][0]["extensions"] = json!({ name: stream });
         assert_eq!(meshopt.import().unwrap().scene.triangle_count(), 1);
         meshopt.json["buffers"] = json!([
             { "byteLength": 36 },
             { "byteLength": 36, "extensions": { name: { "fallback": true } } },
         ]);
         meshopt.json["bufferViews"][0]["buffer"] = json!(1);
-        let expected = format!(", mesh \"tail\", primitive 0: {name} is not supported");
+        let place = format!(", mesh \"tail\", primitive 0: bufferView 0: {name}: ");
+        let expected = format!("{place}it is of a version that is not known");
+        assert_eq!(meshopt.error(), expected);
+        // Room for decoded data need not say what it is.
+        meshopt.json["buffers"][1] = json!({ "byteLength": 36 });
+        assert_eq!(meshopt.error(), expected);
+        meshopt.json["bufferViews"][0]["extensions"][name]["count"] = json!(4);
+        let expected = format!("{place}its mode, filter, stride, count and length do not fit");
+        assert_eq!(meshopt.error(), expected);
+        meshopt.json["bufferViews"][0]["extensions"] = json!({});
+        let expected = ", buffer 1: has no data";
         assert_eq!(meshopt.error(), expected);
     }
 }

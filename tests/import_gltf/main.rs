@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 mod accessors;
+mod animation;
 mod builder;
 mod damage;
 mod deformation;

@@ -277,7 +277,21 @@ impl Node {
     }
 }
 
+/// How messages call primitive `primitive` of mesh `index`.
+pub fn primitive_place(index: usize, mesh: &MeshEntry, primitive: usize) -> String {
+    let mesh = place("mesh", index, mesh.name.as_deref());
+    format!("{mesh}, primitive {primitive}")
+}
+
 impl Document {
+    /// Whether an accessor of `primitive` has no data of its own: zeros, or what a compressed
+    /// stream holds.
+    pub fn lacks_data(&self, primitive: &Primitive) -> bool {
+        let mut accessors = primitive.attributes.values().chain(&primitive.indices);
+        let get = |&accessor: &usize| self.accessors.get(accessor);
+        accessors.any(|accessor| get(accessor).is_some_and(|a| a.buffer_view.is_none()))
+    }
+
     /// How messages call this node.
     pub fn node_place(&self, index: usize) -> String {
         let name = self.nodes.get(index).and_then(|node| node.name.as_deref());

@@ -6,9 +6,13 @@ use std::path::Path;
 use super::document::Document;
 use crate::import::{ImportError, ImportOptions, WarningCode, Warnings};
 
-/// Compressed meshes that we cannot read.
+/// What may move beside nodes.
+pub const ANIMATION_POINTER: &str = "KHR_animation_pointer";
+/// Nodes that are not shown.
+pub const NODE_VISIBILITY: &str = "KHR_node_visibility";
+/// Compressed meshes.
 pub const DRACO: &str = "KHR_draco_mesh_compression";
-/// Compressed buffer views that we cannot read.
+/// Compressed buffer views.
 pub const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 /// Lights.
 pub const LIGHTS: &str = "KHR_lights_punctual";
@@ -16,7 +20,7 @@ pub const LIGHTS: &str = "KHR_lights_punctual";
 pub const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 /// WebP images.
 pub const WEBP: &str = "EXT_texture_webp";
-/// KTX2 images, which we cannot read.
+/// KTX2 images.
 pub const BASISU: &str = "KHR_texture_basisu";
 /// Offset, rotation and scale of texture coordinates.
 pub const TEXTURE_TRANSFORM: &str = "KHR_texture_transform";
@@ -31,7 +35,7 @@ pub const SPECULAR_GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
 pub const VARIANTS: &str = "KHR_materials_variants";
 
 /// What we do all of.
-const KNOWN: &[&str] = &[
+pub const KNOWN: &[&str] = &[
     LIGHTS,
     INSTANCING,
     WEBP,
@@ -51,25 +55,35 @@ const KNOWN: &[&str] = &[
     "KHR_materials_unlit",
     VOLUME,
     "KHR_mesh_quantization",
+    MESHOPT[0],
+    MESHOPT[1],
+    ANIMATION_POINTER,
+    NODE_VISIBILITY,
+    DRACO,
+    BASISU,
 ];
 
 /// What never changes a still picture.
-const HARMLESS: &[&str] = &[
-    "KHR_animation_pointer",
+pub const HARMLESS: &[&str] = &[
     "KHR_xmp",
     "KHR_xmp_json_ld",
     "KHR_audio_emitter",
+    "KHR_interactivity",
+    "KHR_node_hoverability",
+    "KHR_node_selectability",
     "KHR_physics_rigid_bodies",
+    "EXT_mesh_manifold",
     "EXT_mesh_features",
     "EXT_structural_metadata",
 ];
 
 /// What will look different without an extension.
-fn effect(name: &str) -> &'static str {
+pub fn effect(name: &str) -> &'static str {
     match name {
         "KHR_materials_volume_scatter" => "volumes do not scatter light",
-        "KHR_node_visibility" => "hidden nodes are shown",
         "KHR_gaussian_splatting" => "splats are left out",
+        DRACO => "the meshes are left out",
+        "EXT_lights_ies" => "such lights are left out",
         "MSFT_lod" => "the finest level of detail is shown",
         "EXT_lights_image_based" => "light from the environment is left out",
         "EXT_texture_avif" | "MSFT_texture_dds" | BASISU => {
@@ -92,8 +106,11 @@ pub fn check(
 ) -> Result<(), ImportError> {
     for name in &document.extensions_required {
         let name = name.as_str();
-        let hides_geometry = name == DRACO || MESHOPT.contains(&name);
-        if hides_geometry || (options.is_strict && !is_known(name)) {
+        if let Some(feature) = needed_feature(name).filter(|_| name == DRACO) {
+            let what = format!("{name} (feature \"{feature}\" of this build)");
+            return Err(ImportError::unsupported(path, what));
+        }
+        if options.is_strict && !is_known(name) {
             return Err(ImportError::unsupported(path, name));
         }
         if !is_known(name) {
@@ -113,9 +130,25 @@ pub fn check(
 
 /// Whether only the things that use an extension can tell if anything is missing without it.
 fn is_judged_by_use(name: &str) -> bool {
-    name == DRACO || name == BASISU || MESHOPT.contains(&name)
+    name == DRACO || name == BASISU
 }
 
-fn is_known(name: &str) -> bool {
-    KNOWN.contains(&name) || HARMLESS.contains(&name)
+/// Whether an extension never changes a picture.
+pub fn is_harmless(name: &str) -> bool {
+    HARMLESS.contains(&name)
+}
+
+/// The feature that an extension needs and this build lacks.
+pub fn needed_feature(name: &str) -> Option<&'static str> {
+    match name {
+        DRACO if !cfg!(feature = "draco") => Some("draco"),
+        BASISU if !cfg!(feature = "ktx2") => Some("ktx2"),
+        _ => None,
+    }
+}
+
+/// Whether we do all that is to be done for an extension.
+pub fn is_known(name: &str) -> bool {
+    let is_listed = KNOWN.contains(&name) || is_harmless(name);
+    is_listed && needed_feature(name).is_none()
 }

@@ -2,7 +2,13 @@
 //!
 //! Everything is iterative: a chain of a million nodes is legal.
 
+#[cfg(feature = "draco")]
+use std::collections::BTreeSet;
+
+use serde::Deserialize;
+
 use super::document::{Document, Node};
+use super::extensions::NODE_VISIBILITY;
 use crate::import::{WarningCode, Warnings};
 use crate::math::{DAffine3, DMat4, DQuat, DVec3};
 
@@ -15,6 +21,8 @@ pub struct Graph {
     worlds: Worlds,
     /// The nodes of the scene, parents before their children, in file order.
     pub shown: Vec<usize>,
+    /// By node: whether it is hidden; empty where none is.
+    hidden: Vec<bool>,
 }
 
 /// From nodes' coordinates to the world's. Nodes without a transform share that of their parent.
@@ -39,6 +47,20 @@ impl Graph {
         self.worlds.transforms.get(place as usize)
     }
 
+    /// The meshes of the nodes that are shown.
+    #[cfg(feature = "draco")]
+    pub fn meshes(&self, document: &Document) -> BTreeSet<usize> {
+        let shown = self.shown.iter().filter(|&&node| !self.is_hidden(node));
+        shown
+            .filter_map(|&node| document.nodes[node].mesh)
+            .collect()
+    }
+
+    /// Whether the mesh and the light of node `index` are not shown (`KHR_node_visibility`).
+    pub fn is_hidden(&self, index: usize) -> bool {
+        self.hidden.get(index).copied().unwrap_or(false)
+    }
+
     /// Of the document's default scene, or its first, or of all its nodes.
     ///
     /// # Errors
@@ -53,12 +75,60 @@ impl Graph {
             return Err(cycle(document, &order));
         }
         let worlds = world_transforms(document, &parents, &order, warnings);
+        let hidden = hidden(document, &parents, &order, warnings);
         let shown = match shown_roots(document, warnings)? {
             Some(roots) => depth_first(document, &roots),
             None => order,
         };
-        Ok(Self { worlds, shown })
+        Ok(Self {
+            worlds,
+            shown,
+            hidden,
+        })
     }
+}
+
+/// The extension's object in a node.
+#[derive(Deserialize)]
+struct Visibility {
+    #[serde(default = "visible")]
+    visible: bool,
+}
+
+fn visible() -> bool {
+    true
+}
+
+/// By node: whether it or a node above it is hidden; empty where none is.
+fn hidden(
+    document: &Document,
+    parents: &[Option<usize>],
+    order: &[usize],
+    warnings: &mut Warnings,
+) -> Vec<bool> {
+    let mut hidden = Vec::new();
+    for &index in order {
+        let extensions = &document.nodes[index].extensions;
+        let own = extensions.read::<Visibility>(NODE_VISIBILITY);
+        let own = own.unwrap_or_else(|what| {
+            let message = format!("{}: {what}", document.node_place(index));
+            warnings.add(WarningCode::BadValue, message);
+            None
+        });
+        let is_visible = own.is_none_or(|own| own.visible);
+        if !is_visible && hidden.is_empty() {
+            hidden = vec![false; parents.len()];
+        }
+        if let Some(parent) = parents[index]
+            && !hidden.is_empty()
+        {
+            hidden[index] = hidden[parent];
+        }
+        if !is_visible {
+            hidden[index] = true;
+        }
+    }
+    hidden
 }
 
 /// The parent of each node; `None` for roots.

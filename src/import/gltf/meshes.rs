@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use super::accessor::AccessorReader;
-use super::document::{Document, MeshEntry, Primitive, place};
+use super::document::{Document, MeshEntry, Primitive, place, primitive_place};
 use super::extensions::DRACO;
 use super::geometry::{GeometryReader, Shape};
 use super::graph::Graph;
@@ -221,7 +221,12 @@ impl<'a, 'b> Meshes<'a, 'b> {
             let what = format!("material {material} is not there: there are only {count}");
             return Err(Problem::Invalid(what));
         }
-        self.check_compression(primitive)?;
+        // Draco's data may come with a copy that is not compressed.
+        let is_missing = cfg!(not(feature = "draco"));
+        if is_missing && primitive.extensions.has(DRACO) && document.lacks_data(primitive) {
+            let what = format!("{DRACO} (feature \"draco\" of this build)");
+            return Err(Problem::Unsupported(what));
+        }
         let weights = effective_weights(primitive, weights, place, warnings);
         let baked = BakedShape {
             shape: Shape {
@@ -277,25 +282,6 @@ impl<'a, 'b> Meshes<'a, 'b> {
         self.meshes.push(mesh);
         Ok(Some((MeshId(self.meshes.len() as u32 - 1), anchor)))
     }
-
-    /// Draco's data may come with a copy that is not compressed.
-    fn check_compression(&self, primitive: &Primitive) -> Result<(), Problem> {
-        if !primitive.extensions.has(DRACO) {
-            return Ok(());
-        }
-        let accessors = primitive.attributes.values().chain(&primitive.indices);
-        for &accessor in accessors {
-            if self.accessors.get(accessor)?.buffer_view.is_none() {
-                return Err(Problem::Unsupported(DRACO.into()));
-            }
-        }
-        Ok(())
-    }
-}
-
-fn primitive_place(index: usize, mesh: &MeshEntry, primitive: usize) -> String {
-    let mesh = place("mesh", index, mesh.name.as_deref());
-    format!("{mesh}, primitive {primitive}")
 }
 
 /// Bytes of one vertex's value in memory.

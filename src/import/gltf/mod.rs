@@ -6,16 +6,19 @@
 //! instances, materials, lights, pixels) is charged to a [`Budget`] in proportion to the size of the
 //! file. The document itself is not: it takes less than a hundred times the bytes of its JSON.
 //!
-//! Not shown: points and lines, animations (they are counted), Draco and meshopt data, KTX2
-//! images, and the extensions of which [`extensions`] says what is missing without them.
+//! Not shown: points and lines, and the extensions of which [`extensions`] says what is missing
+//! without them. Animations are counted, and shown at one time where that is asked for.
 
 mod accessor;
+mod animation;
 mod buffers;
 mod camera;
 mod component;
 mod container;
 mod document;
 mod document_material;
+#[cfg(feature = "draco")]
+mod draco;
 mod extensions;
 mod geometry;
 mod graph;
@@ -24,8 +27,10 @@ mod light;
 mod material;
 mod material_layers;
 mod meshes;
+mod meshopt;
 mod morph;
 mod skin;
+mod support;
 mod tangents;
 mod texture;
 mod topology;
@@ -42,6 +47,8 @@ use graph::Graph;
 use light::Lights;
 use meshes::{Meshes, Part};
 use texture::Textures;
+
+pub use support::{ExtensionSupport, Support, extension_table};
 
 use super::budget::Budget;
 use super::{ImportError, ImportOptions, Model, Problem, WarningCode, Warnings, files};
@@ -75,19 +82,42 @@ fn read(
         .map_err(|error| ImportError::invalid(path, format!("not a glTF document: {error}")))?;
     check_version(&document).map_err(in_file(path))?;
     extensions::check(&document, path, options, warnings)?;
+    #[cfg_attr(not(feature = "draco"), expect(unused_mut))]
+    let mut buffers = Buffers::read(path, &document, binary)?;
+    // The binary part of a .glb counts twice, which does no harm to a bound.
+    let budget = Budget::for_geometry(file.len() as u64 + buffers.len());
+    if let Some(pose) = options.pose {
+        let accessors = AccessorReader {
+            document: &document,
+            buffers: &buffers,
+            budget: &budget,
+        };
+        let posed = animation::posed(json, &accessors, pose, warnings);
+        document = posed.map_err(in_file(path))?.unwrap_or(document);
+    }
     if let Some(variant) = options.variant {
         variants::choose(&mut document, path, variant, warnings)?;
     }
-    let buffers = Buffers::read(path, &document, binary)?;
-    // The binary part of a .glb counts twice, which does no harm to a bound.
-    let budget = Budget::for_geometry(file.len() as u64 + buffers.len());
+    let graph = Graph::of(&document, warnings)
+        .map_err(|(place, what)| ImportError::invalid_at(path, place, what))?;
+    #[cfg(feature = "draco")]
+    {
+        let meshes = match options.reads_unused_meshes {
+            true => (0..document.meshes.len()).collect(),
+            false => graph.meshes(&document),
+        };
+        let done = draco::decompress(&mut document, &mut buffers, &budget, meshes);
+        done.map_err(|misplaced| ImportError {
+            path: path.to_owned(),
+            place: Some(misplaced.place),
+            problem: misplaced.problem,
+        })?;
+    }
     let accessors = AccessorReader {
         document: &document,
         buffers: &buffers,
         budget: &budget,
     };
-    let graph = Graph::of(&document, warnings)
-        .map_err(|(place, what)| ImportError::invalid_at(path, place, what))?;
     let textures = Textures::read(path, &document, &buffers, warnings);
     let materials = materials(&accessors, &textures, warnings).map_err(in_file(path))?;
     model.undecoded = textures.undecoded;
@@ -170,7 +200,9 @@ impl SceneBuilder<'_, '_> {
             let Some(world) = graph.world(node) else {
                 continue;
             };
-            if let Some(light) = lights.of_node(document, node, world, self.warnings) {
+            if !graph.is_hidden(node)
+                && let Some(light) = lights.of_node(document, node, world, self.warnings)
+            {
                 self.charge_for(node, &light)?;
                 self.scene.lights.push(light);
             }
@@ -178,7 +210,9 @@ impl SceneBuilder<'_, '_> {
                 self.charge_for(node, &camera)?;
                 self.scene.cameras.push(camera);
             }
-            self.add_mesh(node, world)?;
+            if !graph.is_hidden(node) {
+                self.add_mesh(node, world)?;
+            }
         }
         Ok(())
     }

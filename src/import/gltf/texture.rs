@@ -29,9 +29,9 @@ pub struct Textures {
     pub ids: Vec<Option<TextureId>>,
 }
 
-/// `EXT_texture_webp`.
+/// `KHR_texture_basisu`, `EXT_texture_webp`.
 #[derive(Deserialize)]
-struct WebpSource {
+struct OtherSource {
     source: usize,
 }
 
@@ -124,24 +124,36 @@ fn image_name(index: usize, image: &ImageEntry) -> String {
     }
 }
 
-/// The image that a texture shows.
+/// The image that a texture shows: the first that is there, of its formats the newest first.
 fn source(
     document: &Document,
     index: usize,
     texture: &TextureEntry,
     warnings: &mut Warnings,
 ) -> Option<usize> {
-    let webp = texture.extensions.read::<WebpSource>(WEBP);
-    let webp = webp.unwrap_or_else(|what| {
-        warnings.add(WarningCode::BadValue, format!("texture {index}: {what}"));
+    let mut other = |name: &str| {
+        let source = texture.extensions.read::<OtherSource>(name);
+        let source = source.unwrap_or_else(|what| {
+            warnings.add(WarningCode::BadValue, format!("texture {index}: {what}"));
+            None
+        });
+        source.map(|other| other.source)
+    };
+    let basisu = if cfg!(feature = "ktx2") {
+        other(BASISU)
+    } else {
         None
-    });
-    let source = webp.map(|webp| webp.source).or(texture.source);
-    let what = match source {
-        Some(image) if image < document.images.len() => return Some(image),
+    };
+    let sources = [basisu, other(WEBP), texture.source];
+    let count = document.images.len();
+    let is_there = |&image: &usize| image < count;
+    if let Some(image) = sources.into_iter().flatten().find(is_there) {
+        return Some(image);
+    }
+    let what = match sources.into_iter().flatten().next() {
         Some(image) => format!("its image {image} is not there"),
         None if texture.extensions.has(BASISU) => {
-            format!("its only image is KTX2 ({BASISU}), which is not supported")
+            format!("its only image is KTX2 ({BASISU}), which this build does not support")
         }
         None => "it has no image".into(),
     };

@@ -94,6 +94,7 @@ fn scene(
         is_strict: options.is_strict,
         reads_unused_meshes: options.keep.contains(Omission::Meshes),
         variant: options.variant.as_deref(),
+        pose: options.pose.as_ref(),
     };
     let mut models = Models::new(source, import_options, materials);
     for node in root.list("model")? {

@@ -150,7 +150,7 @@ mod value;
 
 use std::path::Path;
 
-use super::{ImportError, Imported};
+use super::{ImportError, Imported, Pose};
 use crate::camera::Camera;
 use crate::math::DVec3;
 use crate::scene::{IntegratorKind, Keep, Needs, Placed};
@@ -171,6 +171,8 @@ pub struct SceneOptions {
     pub variant: Option<String>,
     /// The name of the camera to look through; `None` for what the file says.
     pub camera: Option<String>,
+    /// The moment of its animations that is shown; `None` for all models at rest.
+    pub pose: Option<Pose>,
     /// What layers beside the picture read.
     pub layers: Needs,
     /// What is kept though neither the integrator of the settings nor the layers read it: by
