@@ -84,7 +84,7 @@ impl Bsdf {
         let pdf = self.pdf(view, wi);
         let weight = self.value(view, wi) * (cos_i.abs() / pdf);
         let is_sound = pdf > 0.0 && pdf.is_finite() && weight.is_finite();
-        (is_sound && !weight.is_black()).then_some(BsdfSample {
+        is_sound.then_some(BsdfSample {
             wi,
             weight,
             pdf,
