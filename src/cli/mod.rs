@@ -38,6 +38,7 @@ mod render;
 mod stats;
 #[cfg(feature = "report")]
 mod stress;
+#[cfg(feature = "report")]
 mod table;
 mod targets;
 #[cfg(feature = "report")]

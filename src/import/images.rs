@@ -8,6 +8,7 @@ use std::io::Cursor;
 
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 
+#[cfg(feature = "obj")]
 use super::budget::Budget;
 #[cfg(feature = "ktx2")]
 use super::ktx2;
@@ -24,6 +25,7 @@ const ALLOWED_EXPANSION: u64 = 64;
 /// # Errors
 /// A sentence that begins with `name`, where it cannot be decoded, or with the images before it
 /// holds more pixels than their files account for.
+#[cfg(feature = "obj")]
 pub fn decode_within(bytes: &[u8], name: &str, budget: &Budget) -> Result<Image, String> {
     budget.add_file(bytes.len() as u64);
     let needed = decoded_bytes(bytes, name)?;

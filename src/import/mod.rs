@@ -229,18 +229,19 @@ fn read_model(path: &Path, options: ImportOptions) -> Result<Model, ImportError>
         "gltf" | "glb" => gltf::import(path, options),
         #[cfg(feature = "obj")]
         "obj" => obj::import(path),
-        #[cfg(not(all(feature = "gltf", feature = "obj")))]
-        "gltf" | "glb" | "obj" => {
-            let format = if extension(path) == "obj" {
-                "obj"
-            } else {
-                "gltf"
-            };
-            let what = format!("this format (feature \"{format}\" of this build)");
-            Err(ImportError::unsupported(path, what))
-        }
+        #[cfg(not(feature = "gltf"))]
+        "gltf" | "glb" => Err(not_built(path, "glTF", "gltf")),
+        #[cfg(not(feature = "obj"))]
+        "obj" => Err(not_built(path, "OBJ", "obj")),
         _ => Err(ImportError::invalid(path, NOT_A_MODEL)),
     }
+}
+
+/// `path` is of a format that was left out of this build.
+#[cfg(not(all(feature = "gltf", feature = "obj")))]
+fn not_built(path: &Path, format: &str, feature: &str) -> ImportError {
+    let what = format!("{format} (feature \"{feature}\" of this build)");
+    ImportError::unsupported(path, what)
 }
 
 /// What is wrong with a path that [`is_model`] does not take.
