@@ -277,7 +277,7 @@ fn white_lobes_lose_little() {
         (
             "body",
             |roughness| materials::glass(roughness, true, 0.0),
-            0.25,
+            0.35,
         ),
     ];
     for (name, material, most) in kinds {
