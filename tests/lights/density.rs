@@ -311,3 +311,32 @@ fn rays_towards_samples_see_the_light() {
         }
     }
 }
+
+/// The density that a light says of a direction is that with which it samples it: weight times density is
+/// its radiance.
+#[test]
+fn densities_are_those_of_samples() {
+    for case in cases() {
+        let radiance = |wi| match &case.light {
+            Light::Distant(light) => Some(f64::from(light.radiance_from(wi).r)),
+            Light::Disk(light) => Some(f64::from(light.radiance.r)),
+            Light::Rectangle(light) => Some(f64::from(light.radiance.r)),
+            Light::Sphere(light) => Some(f64::from(light.radiance.r)),
+            Light::Point(_) | Light::Spot(_) => None,
+        };
+        // Pulled in from the rim, where rounding decides whether the light is seen.
+        for u in random(500, 9).map(|u| 0.5 + 0.98 * (u - 0.5)) {
+            let Some(sample) = case.light.sample(case.seen_from, u) else {
+                continue;
+            };
+            let density = case.light.density(case.seen_from, sample.wi);
+            match radiance(sample.wi) {
+                None => assert_eq!(density, 0.0),
+                Some(radiance) => {
+                    let share = f64::from(sample.weight.r) * density / radiance;
+                    assert!((share - 1.0).abs() < 2e-3, "{:?}: {share}", case.light);
+                }
+            }
+        }
+    }
+}
