@@ -209,8 +209,8 @@ impl Layered {
 
     /// The lobe of light that met several white facets.
     fn between_facets(&self, cos_o: f32, cos_i: f32) -> f32 {
-        let lost = |albedo: Vec2| (1.0 - albedo.x - albedo.y).max(0.0);
-        let mean = lost(self.mean_albedo());
+        let mean = self.mean_albedo();
+        let mean = 1.0 - mean.x - mean.y;
         if mean < 1e-6 {
             return 0.0;
         }
@@ -407,7 +407,7 @@ impl Layered {
         let facets = self.reflectance(cos).max_channel();
         let (glass_share, glass) = &self.glass;
         let table = self.albedo(cos);
-        let lost = (1.0 - table.x - table.y).max(0.0);
+        let lost = lost(table);
         let shown = self.shown_below().0(cos);
         let again = self.returned().max_channel() * lost;
         let pane = match glass.is_thin && *glass_share > 0.0 && !self.is_mirror() {
@@ -440,7 +440,7 @@ impl Layered {
     pub fn ambient(&self, pair: &Pair) -> Rgb {
         let cos = pair.wo.z.max(0.0);
         let table = self.albedo(cos);
-        let lost = (1.0 - table.x - table.y).max(0.0);
+        let lost = lost(table);
         let facets =
             |part: &Facets| (part.bound * table.x + Rgb::splat(part.f90 * table.y)) * part.share;
         let all = facets(&self.dielectric) + facets(&self.metal) + self.returned() * lost;
@@ -466,4 +466,11 @@ impl Layered {
         });
         Rgb::splat(coat.0) + (color + base * (1.0 - sheen)) * (1.0 - coat.1)
     }
+}
+
+/// What white facets do not send to a viewer, and what lies between them may: less than is missing by what the
+/// table may be off, so that no energy is made.
+fn lost(albedo: Vec2) -> f32 {
+    const TABLE_ERROR: f32 = 1e-3;
+    (1.0 - albedo.x - albedo.y - TABLE_ERROR).max(0.0)
 }

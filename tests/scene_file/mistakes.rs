@@ -33,7 +33,11 @@ const MISTAKES: &[(&str, usize, &[&str])] = &[
     (
         "[[light]]\nkind = \"point\"\nposition = [0, 0, 0]\nintensity = [1, 1, 1]\nvisible = true\n",
         5,
-        &["unknown key \"visible\"", "point", "known: kind, position"],
+        &[
+            "unknown key \"visible\"",
+            "point",
+            "known: kind, name, position",
+        ],
     ),
     ("[film]\nwidth = 3\n", 2, &["\"width\"", "known: size"]),
     (
@@ -44,7 +48,7 @@ const MISTAKES: &[(&str, usize, &[&str])] = &[
     (
         "[integrator]\ndepth = 3\n",
         2,
-        &["\"depth\"", "kind, max_depth, shadow_terminator"],
+        &["\"depth\"", "kind, max_depth, clamp, shadow_terminator"],
     ),
     (
         "[[model]]\nfile = \"triangle.obj\"\nrotation = [0, 0, 0]\n",
