@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use halfshade::import::{ImportOptions, Imported, import_model};
 use halfshade::material::Surface;
-use halfshade::math::{Vec2, Vec3};
+use halfshade::math::{Affine2, Vec2, Vec3};
 use halfshade::scene::Scene;
 use halfshade::texture::Pixels;
 
@@ -202,6 +202,12 @@ fn corners(scene: &Scene) -> Vec<[f64; 8]> {
     let mut corners = Vec::new();
     for instance in &scene.instances {
         let mesh = scene.mesh(instance.mesh);
+        // Of quantised coordinates the transform of the texture is a part.
+        let transform = match &scene.materials[instance.material.0 as usize].surface {
+            Surface::MetallicRoughness(surface) => surface.base_color.texture,
+            _ => None,
+        };
+        let transform = transform.map_or(Affine2::IDENTITY, |texture| texture.transform);
         for &vertex in mesh.indices().as_flattened() {
             let vertex = vertex as usize;
             let place = mesh.positions()[vertex].as_dvec3();
@@ -210,7 +216,7 @@ fn corners(scene: &Scene) -> Vec<[f64; 8]> {
             let normal = instance.transform.transform_vector3(normal.as_dvec3());
             let normal = normal.normalize_or_zero();
             let uv = mesh.uv_sets().first().map_or(Vec2::ZERO, |uvs| uvs[vertex]);
-            let uv = uv.as_dvec2();
+            let uv = transform.transform_point2(uv).as_dvec2();
             corners.push([
                 place.x, place.y, place.z, normal.x, normal.y, normal.z, uv.x, uv.y,
             ]);
