@@ -201,10 +201,10 @@ impl<const ANY: bool, const W: usize> Job<W> for Trace<'_, ANY, W> {
         let (mut all, size) = packet.beam::<S, W>(0);
         let mut beams = [all; GROUPS];
         packet.course.size = if size > reach { size } else { reach };
-        for group in 1..groups {
+        for (group, kept) in beams.iter_mut().enumerate().take(groups).skip(1) {
             let (beam, size) = packet.beam::<S, W>(group);
             all = all.union(&beam);
-            beams[group] = beam;
+            *kept = beam;
             if size > packet.course.size {
                 packet.course.size = size;
             }
@@ -221,8 +221,8 @@ impl<const ANY: bool, const W: usize> Job<W> for Trace<'_, ANY, W> {
         }
         let beam = BeamTest::<S>::new(&packet.course, &all.widened(&packet.course));
         let mut fars = [0.0; GROUPS];
-        for group in 0..groups {
-            fars[group] = packet.far::<S, W>(group);
+        for (group, far) in fars.iter_mut().enumerate().take(groups) {
+            *far = packet.far::<S, W>(group);
         }
         let mut far = greatest(&fars);
         let mut looks = 0;

@@ -14,9 +14,9 @@ use halfshade::output::automatic_exposure;
 use halfshade::output::denoise::{Denoiser, LIBRARY_VARIABLE};
 use halfshade::output::exr::Window;
 use halfshade::prepare::{Prepared, PreparedScene, prepare_keeping};
+use halfshade::render::stability::Stability;
 use halfshade::render::{self, Event, Job, Limits, Significant, render_within, replay};
 use halfshade::scene::{LeftOut, Placed, Scene, Settings};
-use halfshade::stress::stability::Stability;
 
 use super::Failure;
 use super::arguments::{Exposure, SampleId};

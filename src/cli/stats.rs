@@ -7,8 +7,8 @@ use halfshade::bench::processor_seconds;
 use halfshade::color::Rgb;
 use halfshade::film::{ErrorEstimate, Film, RayCounts, StoppedBy};
 use halfshade::output::{OutputError, write_whole};
+use halfshade::render::stability::Stability;
 use halfshade::scene::LeftOut;
-use halfshade::stress::stability::Stability;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 

@@ -1,8 +1,10 @@
 //! Pictures of the surroundings: OpenEXR, Radiance HDR, and all that textures may be.
 
+#[cfg(feature = "exr")]
 use std::io::Cursor;
 use std::path::Path;
 
+#[cfg(feature = "exr")]
 use exr::prelude::{
     MetaData, ReadChannels, ReadLayers, ReadSpecificChannel, Vec2, read as read_exr,
 };
@@ -10,6 +12,7 @@ use exr::prelude::{
 use super::{ImportError, files, images};
 use crate::color::{Rgb, srgb8_to_linear};
 use crate::light::Environment;
+#[cfg(feature = "exr")]
 use crate::scene::MAX_PIXELS;
 use crate::texture::Pixels;
 
@@ -33,6 +36,7 @@ impl<'a> EnvironmentFile<'a> {
     }
 
     /// Columns and rows of an OpenEXR file.
+    #[cfg(feature = "exr")]
     fn exr_size(&self) -> Result<Option<[usize; 2]>, ImportError> {
         if !self.bytes.starts_with(EXR) {
             return Ok(None);
@@ -79,6 +83,7 @@ impl<'a> EnvironmentFile<'a> {
         Ok(Environment::new(name, size, pixels, factor, rotate_radians))
     }
 
+    #[cfg(feature = "exr")]
     fn exr_pixels(&self) -> Result<([u32; 2], Vec<[f32; 3]>), ImportError> {
         let image = read_exr()
             .no_deep_data()
@@ -100,6 +105,21 @@ impl<'a> EnvironmentFile<'a> {
         let (width, pixels) = image.layer_data.channel_data.pixels;
         let height = pixels.len() / width.max(1);
         Ok(([width as u32, height as u32], pixels))
+    }
+
+    /// Of a build that cannot read such files.
+    #[cfg(not(feature = "exr"))]
+    fn exr_size(&self) -> Result<Option<[usize; 2]>, ImportError> {
+        match self.bytes.starts_with(EXR) {
+            true => Err(super::not_built(self.path, "OpenEXR", "exr")),
+            false => Ok(None),
+        }
+    }
+
+    /// Of a build that cannot read such files.
+    #[cfg(not(feature = "exr"))]
+    fn exr_pixels(&self) -> Result<([u32; 2], Vec<[f32; 3]>), ImportError> {
+        Err(super::not_built(self.path, "OpenEXR", "exr"))
     }
 
     fn image_pixels(&self, name: &str) -> Result<([u32; 2], Vec<[f32; 3]>), ImportError> {

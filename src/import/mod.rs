@@ -238,7 +238,7 @@ fn read_model(path: &Path, options: ImportOptions) -> Result<Model, ImportError>
 }
 
 /// `path` is of a format that was left out of this build.
-#[cfg(not(all(feature = "gltf", feature = "obj")))]
+#[cfg(not(all(feature = "gltf", feature = "obj", feature = "exr")))]
 fn not_built(path: &Path, format: &str, feature: &str) -> ImportError {
     let what = format!("{format} (feature \"{feature}\" of this build)");
     ImportError::unsupported(path, what)

@@ -201,7 +201,7 @@ impl Glass {
             let channel = ((3.0 * rest) as usize).min(2);
             let mut one = [0.0; 3];
             one[channel] = 3.0;
-            through = through * Rgb::from(one);
+            through *= Rgb::from(one);
             refract(wo, half, etas[channel])?
         } else {
             refract(wo, half, etas[0])?

@@ -74,7 +74,7 @@ impl Film {
         let mut sum = series + Rgb::splat(outer);
         let mut amplitude = series - Rgb::splat(through);
         for order in [1.0, 2.0] {
-            amplitude = amplitude * step;
+            amplitude *= step;
             sum += amplitude * (sensitivity(order * way, phase * order) * 2.0);
         }
         sum.map(|f| f.clamp(0.0, 1.0))

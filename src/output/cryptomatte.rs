@@ -33,7 +33,7 @@ impl Cryptomatte {
         P: Iterator<Item = (usize, f32)>,
     {
         let ids: Vec<u32> = names.iter().map(|name| id(name)).collect();
-        let mut channels = vec![Vec::with_capacity(pixels.len()); 2 * RANKS];
+        let mut channels = vec![Vec::new(); 2 * RANKS];
         let mut ranks: Vec<(u32, f32)> = Vec::new();
         for pixel in pixels {
             ranks.clear();

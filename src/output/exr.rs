@@ -5,7 +5,9 @@
 //! precision. Half floats would take half the space, but end at 65504, and their 11 bits are
 //! a relative error of 5e-4, which is more than the errors that these files are compared for.
 
-use std::io::{self, BufWriter, Read, Seek, Write};
+#[cfg(feature = "exr")]
+use std::io::BufWriter;
+use std::io::{self, Read, Seek, Write};
 use std::path::Path;
 
 #[cfg(feature = "exr")]
@@ -18,6 +20,7 @@ use ::exr::prelude::{
     WritableImage,
 };
 
+#[cfg(feature = "exr")]
 use super::header::sort_attributes;
 use super::{OutputError, write_whole};
 use crate::color::Rgb;
@@ -90,7 +93,7 @@ pub fn write(
     })
 }
 
-/// The bytes of an EXR file, to an empty `file`; the same bytes for the same arguments. As in [`write`].
+/// The bytes of an EXR file, to an empty `file`; the same bytes for the same arguments. As in [`write()`].
 ///
 /// # Errors
 /// Where `file` fails, or the window or a name is not possible in an EXR file.
@@ -138,7 +141,7 @@ pub fn encode(
 /// As above, of a build that cannot.
 #[cfg(not(feature = "exr"))]
 pub fn encode(
-    _: impl Write + Seek,
+    _: impl Read + Write + Seek,
     _: Window,
     _: &[Layer],
     _: &[(&str, String)],

@@ -7,6 +7,7 @@ mod cryptomatte;
 pub mod denoise;
 mod exposure;
 pub mod exr;
+#[cfg(feature = "exr")]
 mod header;
 pub mod png;
 mod tone_map;

@@ -61,7 +61,7 @@ pub fn write(
     write_whole(path, |file| encode(file, size, pixels, alpha, options))
 }
 
-/// The bytes of a PNG, to any writer; as in [`write`].
+/// The bytes of a PNG, to any writer; as in [`write()`].
 ///
 /// # Errors
 /// Where `writer` fails, or `size` has no pixels.

@@ -10,6 +10,7 @@ mod backdrop;
 mod course;
 mod forecast;
 mod replay;
+pub mod stability;
 mod stop;
 mod tile;
 

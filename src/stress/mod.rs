@@ -4,8 +4,7 @@
 //! pure function from the [`Effort`] to its [`Check`]s: what was tried, what was measured, what
 //! bound it must keep. The scenes ([`scenes`], [`floor`], [`meshes`]), closed forms ([`closed_form`]) and the
 //! tracer in double precision ([`mod@reference`]) serve the tests as well. A scene of anyone's own is
-//! held against itself in [`invariance`]; what every render says of itself
-//! is in [`stability`].
+//! held against itself in [`invariance`].
 
 mod check;
 pub mod closed_form;
@@ -18,7 +17,6 @@ mod page;
 pub mod reference;
 pub mod scattering;
 pub mod scenes;
-pub mod stability;
 pub mod still_life;
 
 pub use check::{Check, Curve, Report, Status, Sweep};

@@ -33,12 +33,12 @@ fn layers_of_every_kind_are_named_channels() {
     expected.extend(layer("uv", "UV"));
     expected.sort();
     assert_eq!(names, expected);
-    for i in 0..channels["G"].len() {
+    for (i, green) in channels["G"].iter().enumerate() {
         let sum = |parts: &[&str]| -> f32 { parts.iter().map(|name| channels[*name][i]).sum() };
         let of_objects = ["CryptoObject00.G", "CryptoObject00.A"];
         assert!((sum(&of_objects) - channels["A"][i]).abs() < 1e-5);
         let by_events = sum(&["direct.G", "indirect.G", "emission.G"]);
-        assert!((by_events - channels["G"][i]).abs() < 1e-5);
+        assert!((by_events - green).abs() < 1e-5);
     }
     let meta = exr::meta::MetaData::read_from_file(&path, true).unwrap();
     let others = &meta.headers[0].own_attributes.other;

@@ -266,7 +266,8 @@ fn reflection_is_the_same_both_ways() {
 /// which is refracted.
 #[test]
 fn white_lobes_lose_little() {
-    let kinds: [(&str, fn(f32) -> Material, f64); 4] = [
+    type Kind = (&'static str, fn(f32) -> Material, f64);
+    let kinds: [Kind; 4] = [
         ("metal", materials::metal, 0.015),
         ("plastic", materials::plastic, 0.015),
         (

@@ -13,8 +13,10 @@ use halfshade::stress::meshes::Random;
 
 use super::targets;
 
-/// Each kind of file, and what is done with it.
-const TARGETS: [(&str, fn(&[u8])); 7] = [
+/// A kind of file, and what is done with it.
+type Target = (&'static str, fn(&[u8]));
+
+const TARGETS: [Target; 7] = [
     ("gltf", |bytes| targets::model("gltf", bytes)),
     ("glb", |bytes| targets::model("glb", bytes)),
     ("obj", |bytes| targets::model("obj", bytes)),

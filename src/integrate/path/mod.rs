@@ -22,7 +22,7 @@ use crate::scene::Settings;
 use super::{Integrator, RayKind, RayLog, light_samples};
 use lights::{Lights, Place};
 use shadow::is_pane;
-use walk::{Departure, End, Walk, beyond};
+use walk::{Departure, Walk, beyond};
 pub use weighing::Weighing;
 
 /// Scattering events before a path may be ended by chance.
@@ -82,7 +82,7 @@ impl<'a> PathTracer<'a> {
             return false;
         };
         walk.vertex += 1;
-        walk.throughput = walk.throughput * sample.weight;
+        walk.throughput *= sample.weight;
         if walk.throughput.is_black() {
             return false;
         }
@@ -157,13 +157,13 @@ impl Integrator for PathTracer<'_> {
             is_clear: true,
             passed: None,
         };
-        while let End::Surface(surface) = self.advance(&mut walk, sampler, log, &mut total) {
+        while let Some(surface) = self.advance(&mut walk, sampler, log, &mut total) {
             if walk.scattered >= self.max_depth {
                 // Panes do not scatter: what is behind them was looked at through them as well.
                 if !is_pane(&surface) {
                     break;
                 }
-                walk.throughput = walk.throughput * surface.straight();
+                walk.throughput *= surface.straight();
                 continue;
             }
             let at = &surface.interaction;

@@ -41,23 +41,16 @@ pub(super) struct Departure {
     pub density: f64,
 }
 
-/// What a walk came to.
-pub(super) enum End<'a> {
-    /// A surface that scatters it.
-    Surface(Surface<'a>),
-    /// Nothing more.
-    Nothing,
-}
-
 impl<'a> PathTracer<'a> {
-    /// Follows the ray to the next surface that scatters, adding the light that it meets.
+    /// Follows the ray to the next surface that scatters, adding the light that it meets; `None` where there is
+    /// no such surface.
     pub(super) fn advance(
         &self,
         walk: &mut Walk,
         sampler: &Sampler,
         log: &mut RayLog,
         total: &mut Rgb,
-    ) -> End<'a> {
+    ) -> Option<Surface<'a>> {
         loop {
             let hit = self.scene.closest_hit(&walk.ray, walk.passed.as_ref());
             if walk.passed.is_none() {
@@ -79,7 +72,7 @@ impl<'a> PathTracer<'a> {
             }
             if let Some(t) = end {
                 self.see(walk, Sight::Light { t }, log);
-                return End::Nothing;
+                return None;
             }
             let Some(hit) = hit else {
                 let through = self.through_body(walk, f32::INFINITY);
@@ -91,16 +84,16 @@ impl<'a> PathTracer<'a> {
                         log.light(source, walk.scattered, kept, through * light);
                     });
                 }
-                return End::Nothing;
+                return None;
             };
-            walk.throughput = walk.throughput * self.through_body(walk, hit.t);
+            walk.throughput *= self.through_body(walk, hit.t);
             walk.passed = Some(hit);
             if let Some(surface) = self.met(walk, &hit, sampler) {
                 self.see(walk, Sight::Surface(hit), log);
                 let radiance = self.emitted(walk, &surface, &hit);
                 let kept = self.add(total, walk, radiance, walk.scattered, log);
                 log.light(Source::Surface, walk.scattered, kept, radiance);
-                return End::Surface(surface);
+                return Some(surface);
             }
         }
     }
