@@ -17,7 +17,7 @@ use halfshade::stress::closed_form::{disk_irradiance, polygon_irradiance, sphere
 use halfshade::texture::{TexturedRgb, TexturedScalar};
 
 use crate::common::build::*;
-use crate::common::floor::{RHO, disk, irradiance, matte, plane};
+use crate::common::floor::{disk, irradiance, matte, plane};
 
 fn path(samples: u32, max_depth: u32) -> Settings {
     Settings {
