@@ -79,7 +79,9 @@ impl Packet {
             let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
             is_alike &= (main_axis(direction) == main)
                 & ((direction[main] < 0.0) == is_reversed)
-                & is_ordinary(origin, direction[main], reach);
+                & is_ordinary(origin, direction[main], reach)
+                & ray.direction.is_finite()
+                & !ray.t_max.is_nan();
             let (origin, direction) = (turned(origin, axes), turned(direction, axes));
             for k in 0..3 {
                 packet.origin[k][i] = origin[k];
@@ -99,6 +101,8 @@ impl Packet {
             packet.depth[1 - far_end][i] = first_depth(packet.depth[1 - far_end][i], main);
             packet.depth[far_end][i] = last_depth(packet.depth[far_end][i], main);
         }
+        // Those that are not there look nowhere.
+        packet.depth[far_end][rays.len().min(SIZE)..].fill(0.0);
         Some(packet)
     }
 
@@ -209,7 +213,6 @@ impl<const ANY: bool, const W: usize> Job<W> for Trace<'_, ANY, W> {
                 packet.course.size = size;
             }
         }
-        // Written so that a NaN is not narrow.
         let is_narrow = all.slopes[0].high - all.slopes[0].low <= MOST_SPREAD
             && all.slopes[1].high - all.slopes[1].low <= MOST_SPREAD;
         if !is_narrow {

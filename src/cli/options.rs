@@ -237,7 +237,7 @@ pub struct OutputOptions {
     /// A .png or .exr file; may be given again [default: the scene's name with .png, in this folder]
     #[arg(short, long, value_name = "FILE")]
     pub output: Vec<PathBuf>,
-    /// Stops of exposure; auto brings the middle of the picture, of --orbit the first, to middle grey, and says the number (PNG) [default: 0]
+    /// Stops of exposure; auto brings the middle of the picture, of a sequence the first, to middle grey, and says the number (PNG) [default: 0]
     #[arg(long, value_name = "EV|auto", allow_negative_numbers = true, value_parser = arguments::exposure)]
     pub exposure: Option<Exposure>,
     /// What happens to what is too bright; none clips it (PNG) [default: none]

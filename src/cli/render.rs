@@ -2,6 +2,7 @@
 
 use std::env;
 use std::f32::consts::TAU;
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
@@ -38,12 +39,13 @@ const LEAK_RAYS: u64 = 200_000;
 /// Does what the options say.
 pub fn run(options: &RenderOptions) -> Result<(), Failure> {
     let interrupt = Interrupt::listen();
+    let mut stops = None;
     let Some(frames) = &options.sequence.frames else {
-        return run_one(options, &interrupt);
+        return run_one(options, &mut stops, &interrupt);
     };
     for frame in frames.all() {
         interrupt.rendering_is_ahead();
-        run_one(&options.of_frame(frame), &interrupt)?;
+        run_one(&options.of_frame(frame), &mut stops, &interrupt)?;
         if interrupt.is_requested().load(Ordering::SeqCst) {
             return Err(Failure::Interrupted);
         }
@@ -51,7 +53,11 @@ pub fn run(options: &RenderOptions) -> Result<(), Failure> {
     Ok(())
 }
 
-fn run_one(options: &RenderOptions, interrupt: &Interrupt) -> Result<(), Failure> {
+fn run_one(
+    options: &RenderOptions,
+    automatic_stops: &mut Option<f32>,
+    interrupt: &Interrupt,
+) -> Result<(), Failure> {
     // All that can be wrong before the work begins.
     let targets = match options.work.replay {
         None => Some(Targets::of(options)?),
@@ -61,12 +67,13 @@ fn run_one(options: &RenderOptions, interrupt: &Interrupt) -> Result<(), Failure
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()?;
-    pool.install(|| run_on_pool(options, targets.as_ref(), interrupt))
+    pool.install(|| run_on_pool(options, targets.as_ref(), automatic_stops, interrupt))
 }
 
 fn run_on_pool(
     options: &RenderOptions,
     targets: Option<&Targets>,
+    automatic_stops: &mut Option<f32>,
     interrupt: &Interrupt,
 ) -> Result<(), Failure> {
     let mut clock = StepClock::start();
@@ -101,12 +108,12 @@ fn run_on_pool(
         limits,
         kept,
         denoiser,
-        automatic_stops: None,
+        automatic_stops,
         clock,
         seconds,
     };
     let Some(targets) = targets else {
-        return replay_one(options, &work.job(camera));
+        return replay_one(options, &work.limits, &work.job(camera));
     };
     let Some(count) = options.picture.orbit else {
         return work.picture(camera, targets, None);
@@ -132,7 +139,7 @@ struct Work<'a> {
     kept: Kept,
     denoiser: Option<Denoiser>,
     /// What the first picture asked for.
-    automatic_stops: Option<f32>,
+    automatic_stops: &'a mut Option<f32>,
     clock: StepClock,
     seconds: Seconds,
 }
@@ -303,12 +310,16 @@ fn crop(options: &RenderOptions, settings: &Settings) -> Result<Rect, Failure> {
     }
 }
 
-fn replay_one(options: &RenderOptions, job: &Job) -> Result<(), Failure> {
+fn replay_one(options: &RenderOptions, limits: &Limits, job: &Job) -> Result<(), Failure> {
     let Some(SampleId { pixel, index }) = options.work.replay else {
         return Ok(());
     };
     let size = job.settings.size;
-    let samples = job.settings.sampling.samples_per_pixel();
+    // Where samples go where the error is, a pixel may have any number of them.
+    let samples = match limits.is_open() || limits.is_adaptive {
+        true => 1 << 31,
+        false => job.settings.sampling.samples_per_pixel(),
+    };
     if pixel.x >= size.x || pixel.y >= size.y || index >= samples {
         return Err(Failure::usage(
             "render",
@@ -365,13 +376,24 @@ fn announce_samples(job: &Job, limits: &Limits, console: Console) {
 /// What the render says about its own numbers.
 fn stability(options: &RenderOptions, scene: &PreparedScene, film: &Film) -> Stability {
     let leaks = options.work.check_leaks.then(|| scene.leaks(LEAK_RAYS));
-    Stability::of(scene, film, leaks, &command())
+    Stability::of(scene, film, leaks, command(options).as_deref())
 }
 
 /// The command that was given, as a shell reads it.
-fn command() -> String {
-    let arguments = std::env::args_os().skip(1);
-    let quoted = arguments.map(|argument| {
+/// With `--frames` that of the frame alone; `None` with `--orbit`, whose pictures have none.
+fn command(options: &RenderOptions) -> Option<String> {
+    if options.picture.orbit.is_some() {
+        return None;
+    }
+    let mut arguments: Vec<_> = env::args_os().skip(1).collect();
+    if options.sequence.frames.is_some() {
+        for option in ["--frames", "--fps"] {
+            without(&mut arguments, option);
+        }
+        let time = options.scene.reading.time_code.unwrap_or(0.0);
+        arguments.extend(["--time-code".into(), time.to_string().into()]);
+    }
+    let quoted = arguments.iter().map(|argument| {
         let argument = argument.to_string_lossy();
         let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./,=:+@%".contains(c);
         if !argument.is_empty() && argument.chars().all(is_plain) {
@@ -383,7 +405,16 @@ fn command() -> String {
     let words: Vec<String> = std::iter::once("halfshade".to_owned())
         .chain(quoted)
         .collect();
-    words.join(" ")
+    Some(words.join(" "))
+}
+
+/// Takes `option` and its value out of `arguments`.
+fn without(arguments: &mut Vec<OsString>, option: &str) {
+    let joined = format!("{option}=");
+    if let Some(at) = arguments.iter().position(|argument| argument == option) {
+        arguments.drain(at..(at + 2).min(arguments.len()));
+    }
+    arguments.retain(|argument| !argument.to_string_lossy().starts_with(&joined));
 }
 
 fn say_clamped(console: Console, settings: &Settings, film: &Film) {

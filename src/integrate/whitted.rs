@@ -52,6 +52,9 @@ struct MetLight {
     radiance: Rgb,
 }
 
+/// Shadow rays that wait at most until they are traced together.
+const MOST_WAITING: usize = 4096;
+
 /// What is still to be done for some samples.
 #[derive(Default)]
 struct Work {
@@ -65,6 +68,9 @@ struct Work {
     shadows: Vec<Shadow>,
     /// Whether something is in their way.
     blocked: Vec<bool>,
+    /// What they brought to each sample so far: a sum of its own, so that it does not matter when they are
+    /// traced.
+    lit: Vec<Rgb>,
 }
 
 /// What a shadow ray is for.
@@ -227,6 +233,10 @@ impl<'a> Whitted<'a> {
                         depth: from.depth,
                         value: from.weight * value / count as f32,
                     });
+                    if work.shadow_rays.len() == MOST_WAITING {
+                        self.light_up(work, log);
+                        log.turn_to(work.sample);
+                    }
                 }
             }
         }
@@ -274,12 +284,13 @@ impl<'a> Whitted<'a> {
         Some((ray, unshadowed))
     }
 
-    /// Traces the shadow rays, and adds what comes through to the `radiances` of their samples.
-    fn light_up(&self, work: &mut Work, radiances: &mut [Rgb], log: &mut RayLog) {
+    /// Traces the shadow rays, and adds what comes through to what their samples are lit by.
+    fn light_up(&self, work: &mut Work, log: &mut RayLog) {
         let Work {
             shadow_rays: rays,
             shadows,
             blocked,
+            lit,
             ..
         } = work;
         blocked.resize(rays.len(), false);
@@ -290,7 +301,7 @@ impl<'a> Whitted<'a> {
                 (true, false) => shadow.value,
                 (false, _) => shadow.value * transmittance(self.scene, ray),
             };
-            radiances[shadow.sample] += value;
+            lit[shadow.sample] += value;
             log.turn_to(shadow.sample);
             log.light(
                 Source::Light(shadow.light),
@@ -383,7 +394,10 @@ impl Integrator for Whitted<'_> {
         let rays: Vec<Ray> = samples.iter().map(|sample| sample.ray).collect();
         let mut hits = vec![None; rays.len()];
         self.scene.closest_hits(&rays, &mut hits);
-        let mut work = Work::default();
+        let mut work = Work {
+            lit: vec![Rgb::BLACK; samples.len()],
+            ..Work::default()
+        };
         let start = radiances.len();
         for (place, (CameraSample { ray, sampler }, hit)) in samples.iter().zip(hits).enumerate() {
             work.sample = place;
@@ -402,7 +416,10 @@ impl Integrator for Whitted<'_> {
             }
             radiances.push(total);
         }
-        self.light_up(&mut work, &mut radiances[start..], log);
+        self.light_up(&mut work, log);
+        for (radiance, lit) in radiances[start..].iter_mut().zip(work.lit) {
+            *radiance += lit;
+        }
     }
 
     fn background(&self) -> Rgb {

@@ -348,11 +348,15 @@ impl Layered {
             0 => {
                 let coat = self.coat(pair)?;
                 let (wi, cos) = coat.draw(wo, coat_normal, u)?;
+                // The coat's own normal may send light below the horizon of what is under it.
+                if wi.z <= 0.0 {
+                    return None;
+                }
                 if coat.alpha > MIRROR_ALPHA {
                     return Some(Drawn::Area(wi));
                 }
                 let weight = Rgb::splat(coat.share * coat_fresnel(cos));
-                (wi.z > 0.0).then_some(Drawn::Specular(wi, weight / share))
+                Some(Drawn::Specular(wi, weight / share))
             }
             1 => {
                 let (sin, cos) = (TAU * u.y).sin_cos();

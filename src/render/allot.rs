@@ -3,10 +3,10 @@
 //! A half of a pixel is allotted by what the *other* half has seen there and what both have seen in
 //! the eight pixels around, never by its own samples, so that no half stops where it has been lucky
 //! (Kirk and Arvo 1991, "Unbiased Sampling Techniques for Image Synthesis", on the bias of doing so).
-//! The halves weigh the same whatever their counts ([`crate::film::Pixel`]). What is left is a bias of
-//! second order: how well the other half knows depends on its count, on which this half once
-//! had a say. `tests/limits/adaptive.rs` measures it: with 16 samples a pixel its square is less than 1 % of
-//! the squared error.
+//! The halves weigh the same whatever their counts ([`crate::film::Pixel`]). What is left is a bias:
+//! how well the other half knows depends on its count, on which this half once had a say; and the factor that a tile
+//! learns (below) has the difference of the pixel's own halves in it, among those of the whole tile and the film.
+//! `tests/limits/adaptive.rs` measures it: with 16 samples a pixel its square is less than 1 % of the squared error.
 //!
 //! Variances of samples say where the error is, but overstate that of a stratified pattern by far. How far, each
 //! tile learns from the difference of its pixels' halves. With errors falling like n^-p and samples that cost c, the sum of all

@@ -143,7 +143,7 @@ pub enum Event {
 /// Renders `job` on the current thread pool, with the samples that its settings ask for, the same for each pixel.
 ///
 /// `observe` hears of every finished tile, from any thread. Once `cancel` is set the render ends
-/// within a few samples, and the film holds what there is.
+/// once each thread is done with the few dozen samples that it has begun, and the film holds what there is.
 pub fn render(job: &Job, cancel: &AtomicBool, observe: &(dyn Fn(Event) + Sync)) -> Film {
     render_within(job, &Limits::of(job.settings), cancel, observe)
 }

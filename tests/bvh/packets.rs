@@ -123,6 +123,19 @@ fn rays_that_have_nothing_in_common_or_are_none() {
 }
 
 #[test]
+fn a_ray_that_is_none_takes_nothing_from_its_neighbours() {
+    let mesh = sphere(4);
+    for broken in [7, 20, 63] {
+        let mut rays = camera(4.0 * Vec3::X, Vec3::ZERO, 0.3, 8);
+        rays[broken].direction.y = f32::NAN;
+        check(&mesh, &rays);
+        let mut rays = camera(4.0 * Vec3::X, Vec3::ZERO, 0.3, 8);
+        rays[broken].t_max = f32::NAN;
+        check(&mesh, &rays);
+    }
+}
+
+#[test]
 fn many_small_triangles() {
     let Some(mesh) = bunny() else {
         return;

@@ -162,6 +162,9 @@ impl<'a> Lights<'a> {
             };
         }
         let groups = self.infinite.len() + usize::from(!self.tree.is_empty());
+        if groups == 0 {
+            return 0.0;
+        }
         let share = 1.0 / groups as f64;
         if self.infinite.contains(&light) {
             share

@@ -52,7 +52,8 @@ impl Group {
         // Nearer than the radius, the mean distance of the lights no longer falls; and they may be
         // in any direction.
         if squared <= self.radius_squared {
-            return self.intensity / self.radius_squared.max(f64::MIN_POSITIVE);
+            // At the very place of a light, not beyond all bounds, which have no shares.
+            return (self.intensity / self.radius_squared.max(f64::MIN_POSITIVE)).min(1e300);
         }
         let way = to_light / squared.sqrt();
         // Half the angle under which the sphere is seen.

@@ -92,8 +92,13 @@ pub struct LeakCounts {
 }
 
 impl Stability {
-    /// What there is to say of `film`, a picture of `scene` that was made by `command`.
-    pub fn of(scene: &PreparedScene, film: &Film, leaks: Option<Leaks>, command: &str) -> Self {
+    /// What there is to say of `film`, a picture of `scene`. `command` made it; `None` where no single one does.
+    pub fn of(
+        scene: &PreparedScene,
+        film: &Film,
+        leaks: Option<Leaks>,
+        command: Option<&str>,
+    ) -> Self {
         let samples: u64 = film.pixels.iter().map(Pixel::count).sum();
         let dropped = dropped(film, command);
         let lights = lights::places(scene);
@@ -165,7 +170,7 @@ impl Stability {
     }
 }
 
-fn dropped(film: &Film, command: &str) -> Dropped {
+fn dropped(film: &Film, command: Option<&str>) -> Dropped {
     let first = film
         .first_rejected
         .map(|first| [first.pixel.x, first.pixel.y, first.index]);
@@ -176,7 +181,9 @@ fn dropped(film: &Film, command: &str) -> Dropped {
         samples: film.rejected,
         empty_pixels: film.pixels.iter().filter(is_empty).count() as u64,
         first,
-        replay: first.map(|[x, y, index]| format!("{command} --replay {x},{y},{index}")),
+        replay: first
+            .zip(command)
+            .map(|([x, y, index], command)| format!("{command} --replay {x},{y},{index}")),
     }
 }
 
