@@ -155,10 +155,7 @@ fn run_on_pool(options: &ConvergeOptions, folder: &Folder) -> Result<Study, Fail
     let Imported {
         scene, settings, ..
     } = load(options)?;
-    let placed = scene.cameras.first().ok_or_else(|| {
-        let name = options.scene.scene.display();
-        Failure::job(format_args!("{name}: there is no camera to look through"))
-    })?;
+    let placed = options.scene.camera(&scene)?;
     let mut seconds = Seconds {
         import: clock.step(),
         ..Seconds::default()

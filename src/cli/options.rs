@@ -4,15 +4,18 @@ use std::path::PathBuf;
 
 use clap::Args;
 use halfshade::bvh::Builder;
+use halfshade::camera::Camera;
 use halfshade::film::Rect;
 use halfshade::import::{Pose, SceneOptions};
 use halfshade::integrate::Aov;
 use halfshade::math::UVec2;
 use halfshade::sampling::{Pattern, Target};
 use halfshade::scene::{
-    IntegratorKind, Keep, MAX_DEPTH, MAX_LIGHT_SAMPLES, MAX_SAMPLES, Needs, Settings, ToneMap,
+    IntegratorKind, Keep, MAX_DEPTH, MAX_LIGHT_SAMPLES, MAX_SAMPLES, Needs, Placed, Scene,
+    Settings, ToneMap,
 };
 
+use super::Failure;
 use super::arguments::{self, Exposure, Frames, SampleId};
 use super::console::Console;
 use super::layers::{GUIDES, LayerKind};
@@ -261,6 +264,14 @@ impl SceneArguments {
     /// How the scene is imported.
     pub fn import_options(&self) -> SceneOptions {
         self.reading.import_options()
+    }
+
+    /// The camera of `scene` that is looked through.
+    pub fn camera<'a>(&self, scene: &'a Scene) -> Result<&'a Placed<Camera>, Failure> {
+        scene.cameras.first().ok_or_else(|| {
+            let name = self.scene.display();
+            Failure::job(format_args!("{name}: there is no camera to look through"))
+        })
     }
 }
 

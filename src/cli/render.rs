@@ -85,7 +85,7 @@ fn run_on_pool(
     let deadline = deadline(options, targets, crop, &clock);
     let limits = limits(options, &mut imported.settings, deadline)?;
     let settings = &imported.settings;
-    let camera = camera(options, &imported.scene)?;
+    let camera = options.scene.camera(&imported.scene)?;
     seconds.import = clock.step();
 
     let limit = options.work.max_memory;
@@ -263,14 +263,6 @@ fn load(options: &RenderOptions) -> Result<Imported, Failure> {
     announce(options.console, &imported);
     options.apply(&mut imported.settings);
     Ok(imported)
-}
-
-/// The camera that is looked through.
-fn camera<'a>(options: &RenderOptions, scene: &'a Scene) -> Result<&'a Placed<Camera>, Failure> {
-    scene.cameras.first().ok_or_else(|| {
-        let name = options.scene.scene.display();
-        Failure::job(format_args!("{name}: there is no camera to look through"))
-    })
 }
 
 /// Warnings, and what was added to a scene that lacked it.

@@ -4,10 +4,13 @@ use crate::color::Rgb;
 use crate::math::Ray;
 use crate::prepare::{PreparedScene, Surface};
 
-/// Share of the light that comes through along `ray`, per channel.
-///
-/// Blockers tint by what they let through and do not bend: glass is crossed in a straight line.
-pub fn transmittance(scene: &PreparedScene, ray: &Ray) -> Rgb {
+/// Share of the light that comes through along `ray`, per channel, where each surface on the way lets the share
+/// `let_through` pass.
+pub fn transmittance(
+    scene: &PreparedScene,
+    ray: &Ray,
+    let_through: impl Fn(&Surface) -> Rgb,
+) -> Rgb {
     match scene.crossings(ray) {
         None => Rgb::BLACK,
         Some(crossed) => crossed
@@ -17,8 +20,9 @@ pub fn transmittance(scene: &PreparedScene, ray: &Ray) -> Rgb {
     }
 }
 
-/// Share of the light that crosses `surface`.
-fn let_through(surface: &Surface) -> Rgb {
+/// Share of the light that crosses `surface` where blockers tint by what they let through and do not bend: glass is
+/// crossed in a straight line.
+pub fn straight_through(surface: &Surface) -> Rgb {
     let opacity = surface.material.opacity(&surface.lookup);
     let specular = &surface.bsdf.specular;
     let at = &surface.interaction;

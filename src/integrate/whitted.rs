@@ -11,7 +11,7 @@ use crate::prepare::{PreparedScene, Surface};
 use crate::sampling::Sampler;
 use crate::scene::Settings;
 
-use super::visibility::transmittance;
+use super::visibility::{straight_through, transmittance};
 use super::{CameraSample, Integrator, RayKind, RayLog, RayRecord, Sight, Source, light_samples};
 
 /// Rays that count for less than this in every channel are not followed: what is cut off is at
@@ -299,7 +299,7 @@ impl<'a> Whitted<'a> {
             let value = match (is_told, is_blocked) {
                 (true, true) => Rgb::BLACK,
                 (true, false) => shadow.value,
-                (false, _) => shadow.value * transmittance(self.scene, ray),
+                (false, _) => shadow.value * transmittance(self.scene, ray, straight_through),
             };
             lit[shadow.sample] += value;
             log.turn_to(shadow.sample);

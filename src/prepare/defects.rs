@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::geometry::TreeGeometry;
 use crate::math::{DVec3, Vec3};
+use crate::sampling::mix;
 use crate::scene::MeshId;
 
 /// Longest edge over least height from which a triangle counts as a needle.
@@ -145,13 +146,6 @@ fn key_of(corners: [Vec3; 3]) -> u64 {
     };
     let keys = corners.map(of_corner);
     mix(keys[0].wrapping_add(keys[1]).wrapping_add(keys[2]))
-}
-
-/// A bijection of 64 bits in which each bit depends on all (Stafford 2011, "Better Bit Mixing", variant 13).
-pub(super) fn mix(mut x: u64) -> u64 {
-    x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    x ^ (x >> 31)
 }
 
 #[cfg(test)]

@@ -7,10 +7,10 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::PreparedScene;
-use super::defects::mix;
 use super::geometry::{Placing, TreeGeometry};
 use crate::bvh::Hit;
 use crate::math::{DVec3, Ray, Vec3, gamma};
+use crate::sampling::mix;
 
 /// What came of rays that started inside closed meshes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -40,7 +40,7 @@ fn unit_interval(bits: u64) -> f32 {
 }
 
 /// A bijection of 64 bits in which each bit depends on all (Stafford 2011, "Better Bit Mixing", variant 13).
-fn mix(mut x: u64) -> u64 {
+pub fn mix(mut x: u64) -> u64 {
     x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     x ^ (x >> 31)

@@ -10,6 +10,7 @@ mod sampler;
 mod sobol;
 mod warp;
 
+pub use key::mix;
 pub use pattern::{Pattern, SamplingConfig, Target};
 pub use sampler::Sampler;
 pub use warp::{square_to_cone, square_to_disk};

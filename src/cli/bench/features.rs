@@ -70,10 +70,7 @@ pub fn run(options: &FeatureOptions) -> Result<(), Failure> {
     let Imported {
         scene, settings, ..
     } = load(options)?;
-    let camera = scene.cameras.first().ok_or_else(|| {
-        let name = options.scene.scene.display();
-        Failure::job(format_args!("{name}: there is no camera to look through"))
-    })?;
+    let camera = options.scene.camera(&scene)?;
     let plan = FeaturePlan {
         repeats: usize::from(options.repeats),
         limit: options.seconds,

@@ -2,9 +2,10 @@
 
 use super::PathTracer;
 use super::lights::{Incident, Place};
-use super::shadow::transmittance;
+use super::shadow::let_through;
 use super::walk::{Walk, beyond, through};
 use crate::color::Rgb;
+use crate::integrate::visibility::transmittance;
 use crate::integrate::{RayKind, RayLog, RayRecord};
 use crate::light::ShadowEnd;
 use crate::prepare::Surface;
@@ -105,7 +106,7 @@ impl PathTracer<'_> {
         let absorbed = around.map_or(Rgb::WHITE, |absorption| {
             through(absorption, self.scene.world_distance(way))
         });
-        let value = unshadowed * absorbed * transmittance(self.scene, &ray);
+        let value = unshadowed * absorbed * transmittance(self.scene, &ray, let_through);
         let kind = RayKind::Shadow(light);
         log.add(kind, || RayRecord {
             kind,

@@ -1,26 +1,14 @@
-//! How much light comes straight from a light to a point, and what paths cross without a bend.
+//! What paths and their shadow rays cross without a bend.
 
 use crate::color::Rgb;
-use crate::math::Ray;
-use crate::prepare::{PreparedScene, Surface};
+use crate::prepare::Surface;
 
-/// Share of the light that comes through along `ray`, per channel.
+/// Share of the light that crosses `surface` in a straight line.
 ///
 /// Shadow rays cross exactly what paths cross without scattering: holes, what is partly transparent,
 /// and panes. A body that refracts stops them, whatever it is made of: the light behind it comes
 /// by the paths that go through it, and must not be counted twice.
-pub(super) fn transmittance(scene: &PreparedScene, ray: &Ray) -> Rgb {
-    match scene.crossings(ray) {
-        None => Rgb::BLACK,
-        Some(crossed) => crossed
-            .iter()
-            .map(|hit| let_through(&scene.surface(ray, hit)))
-            .fold(Rgb::WHITE, |through, share| through * share),
-    }
-}
-
-/// Share of the light that crosses `surface` in a straight line.
-fn let_through(surface: &Surface) -> Rgb {
+pub(super) fn let_through(surface: &Surface) -> Rgb {
     let opacity = surface.material.opacity(&surface.lookup);
     let mut through = Rgb::splat(1.0 - opacity);
     if is_pane(surface) {
