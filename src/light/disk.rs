@@ -1,9 +1,11 @@
 //! A one-sided disk of constant radiance.
 
 use super::spherical_ellipse::SphericalEllipse;
-use super::{LightSample, ShadowEnd, has_extent, plane_hit, shadow_point, unit, weigh};
+use super::{
+    LightSample, LightSampleRow, ShadowEnd, has_extent, plane_hit, shadow_point, unit, weigh,
+};
 use crate::color::Rgb;
-use crate::math::{DVec3, Ray, UnitVec3, Vec2, Vec3};
+use crate::math::{DVec3, ROW, Ray, RowJob, UnitVec3, Vec2, Vec3, VectorRow, widely};
 
 /// A one-sided disk of constant radiance.
 #[derive(Clone, Copy, Debug)]
@@ -26,13 +28,34 @@ impl DiskLight {
     /// See [`super::Light::sample`]. Nearly uniform by solid angle, so that the weights hardly
     /// vary, and are bounded however near the disk is.
     pub fn sample(&self, point: Vec3, u: Vec2) -> Option<LightSample> {
+        self.sample_across(self.exact_normal(), point, u)
+    }
+
+    /// [`Self::sample`] of each point of a row.
+    pub(super) fn sample_row(
+        &self,
+        points: &VectorRow,
+        u: &[Vec2; ROW],
+        samples: &mut LightSampleRow,
+    ) {
+        widely(SampleRow {
+            light: self,
+            points,
+            u,
+            samples,
+        });
+    }
+
+    #[inline(always)]
+    fn sample_across(&self, normal: DVec3, point: Vec3, u: Vec2) -> Option<LightSample> {
         let point = point.as_dvec3();
         let center = self.center.as_dvec3() - point;
-        let seen = SphericalEllipse::of_disk(center, self.exact_normal(), self.radius.into())?;
+        let seen = SphericalEllipse::of_disk(center, normal, self.radius.into())?;
         let sample = seen.sample(u);
-        Some(LightSample {
+        let weight = weigh(self.radiance, sample.inverse_density);
+        weight.map(|weight| LightSample {
             wi: unit(sample.direction),
-            weight: weigh(self.radiance, sample.inverse_density)?,
+            weight,
             shadow: ShadowEnd::Point(shadow_point(point + sample.on_disk)),
         })
     }
@@ -70,5 +93,41 @@ impl DiskLight {
         let radius = f64::from(self.radius);
         (!self.is_delta() && from_center.length_squared() <= radius * radius)
             .then_some((t, self.radiance))
+    }
+}
+
+struct SampleRow<'a> {
+    light: &'a DiskLight,
+    points: &'a VectorRow,
+    u: &'a [Vec2; ROW],
+    samples: &'a mut LightSampleRow,
+}
+
+impl RowJob for SampleRow<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self {
+            light,
+            points,
+            u,
+            samples,
+        } = self;
+        sample_row(light, points, u, samples);
+    }
+}
+
+// A function with references of its own: of those the compiler knows that they do not overlap.
+#[inline(always)]
+fn sample_row(
+    light: &DiskLight,
+    points: &VectorRow,
+    u: &[Vec2; ROW],
+    samples: &mut LightSampleRow,
+) {
+    let normal = light.exact_normal();
+    for i in 0..ROW {
+        samples.set(i, light.sample_across(normal, points.get(i), u[i]));
     }
 }

@@ -9,6 +9,7 @@ mod environment;
 mod falloff;
 mod point;
 mod rectangle;
+mod row;
 mod sphere;
 mod spherical_ellipse;
 mod spherical_rectangle;
@@ -22,6 +23,7 @@ pub use environment::{Environment, EnvironmentSampler};
 pub use falloff::Falloff;
 pub use point::PointLight;
 pub use rectangle::RectangleLight;
+pub use row::LightSampleRow;
 pub use sphere::SphereLight;
 pub use spot::SpotLight;
 pub use tree::{LightBounds, LightTree, Receiver};
@@ -246,22 +248,31 @@ fn has_extent(radius: f32) -> bool {
 }
 
 /// A vector of length 1, in single precision.
+#[inline(always)]
 fn unit(direction: DVec3) -> UnitVec3 {
     UnitVec3::from_normalized(direction.as_vec3())
 }
 
 /// Far quicker than `f64::hypot`, and as good: squares of `f32` numbers do not leave `f64`.
+#[inline(always)]
 fn hypotenuse(a: f64, b: f64) -> f64 {
     (a * a + b * b).sqrt()
 }
 
 /// `color * factor`; `None` where that is black, or more than single precision holds.
+#[inline(always)]
 fn weigh(color: Rgb, factor: f64) -> Option<Rgb> {
-    let weight = color.map(|c| (f64::from(c) * factor) as f32);
+    let [r, g, b] = color.channels();
+    let weight = Rgb::new(
+        (f64::from(r) * factor) as f32,
+        (f64::from(g) * factor) as f32,
+        (f64::from(b) * factor) as f32,
+    );
     (weight.is_finite() && !weight.is_black()).then_some(weight)
 }
 
 /// In single precision, kept finite for lights that reach beyond it.
+#[inline(always)]
 fn shadow_point(point: DVec3) -> Vec3 {
     let largest = DVec3::splat(f64::from(f32::MAX));
     point.clamp(-largest, largest).as_vec3()

@@ -49,12 +49,13 @@ pub(super) struct DiskSample {
 impl SphericalEllipse {
     /// The disk around `center`; `None` where the origin is not on the side of its unit `normal`,
     /// or the disk has no area.
+    ///
+    /// Without a branch, for rows of origins: what is `None` is computed too.
+    #[inline(always)]
     pub fn of_disk(center: DVec3, normal: DVec3, radius: f64) -> Option<Self> {
         let toward_plane = -normal;
         let height = center.dot(toward_plane);
-        if !(height > 0.0 && height.is_finite() && radius > 0.0) {
-            return None;
-        }
+        let is_seen = height > 0.0 && height < f64::INFINITY && radius > 0.0;
         let (lateral, offset) = lateral(center - toward_plane * height, height, normal);
 
         // In the plane of the normal and the centre, the disk is the side from `low` to `high` of
@@ -72,22 +73,23 @@ impl SphericalEllipse {
         let share = 1.0 / sum;
         let sin = 2.0 * radius * share;
         let cos = (gap * share * ((sum + 2.0 * radius) * share)).sqrt();
-        let squash = height / ((to_low * to_high).sqrt() * cos);
+        let squash = lesser(height / ((to_low * to_high).sqrt() * cos), 1.0);
         // Where the bisector of the angle at the origin meets the disk.
         let foot = low * (to_high * share) + high * (to_low * share);
         let unit = 1.0 / hypotenuse(foot, height);
         let (across, along) = (height * unit, foot * unit);
-        Some(Self {
+        let seen = Self {
             wide: lateral.cross(toward_plane),
             narrow: lateral * across - toward_plane * along,
             axis: lateral * along + toward_plane * across,
             cos,
             one_minus_cos: sin * sin / (1.0 + cos),
-            squash: squash.min(1.0),
+            squash,
             toward_plane,
             height,
             farthest: to_high,
-        })
+        };
+        is_seen.then_some(seen)
     }
 
     /// The density by solid angle with which [`Self::sample`] takes a direction in which the disk is seen.
@@ -102,16 +104,18 @@ impl SphericalEllipse {
     }
 
     /// A direction of density `1 / inverse_density` by solid angle.
+    #[inline(always)]
     pub fn sample(&self, u: Vec2) -> DiskSample {
         let round = square_to_cone(u, self.one_minus_cos);
         // Rounding must not bring the edge of the cone down to the horizon.
-        let round_z = round.z.max(self.cos);
+        let round_z = greater(round.z, self.cos);
         let y = round.y * self.squash;
         let z = (round_z * round_z + (round.y - y) * (round.y + y)).sqrt();
         let direction = self.wide * round.x + self.narrow * y + self.axis * z;
-        let toward_plane = direction
-            .dot(self.toward_plane)
-            .max(self.height / self.farthest);
+        let toward_plane = greater(
+            direction.dot(self.toward_plane),
+            self.height / self.farthest,
+        );
         DiskSample {
             direction,
             inverse_density: TAU * self.one_minus_cos * self.squash * (round_z / z),
@@ -122,11 +126,26 @@ impl SphericalEllipse {
 
 /// The direction of `offset` and its length; any direction across `normal` where there is no
 /// more to it than rounding.
+#[inline(always)]
 fn lateral(offset: DVec3, height: f64, normal: DVec3) -> (DVec3, f64) {
     let length = offset.length();
+    let any = normal.any_orthonormal_vector();
+    let along = offset * (1.0 / length);
     if length > 1e-12 * height {
-        (offset * (1.0 / length), length)
+        (along, length)
     } else {
-        (normal.any_orthonormal_vector(), 0.0)
+        (any, 0.0)
     }
+}
+
+/// `f64::min` of what is no NaN, in a single instruction.
+#[inline(always)]
+fn lesser(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// `f64::max`, likewise.
+#[inline(always)]
+fn greater(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }

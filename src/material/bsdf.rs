@@ -170,6 +170,26 @@ impl Bsdf {
         self.lobes.value(&view.pair(wi), false)
     }
 
+    /// Reflectance of its matte base.
+    pub fn diffuse(&self) -> Rgb {
+        match &self.lobes {
+            Lobes::Phong { diffuse, .. } => *diffuse,
+            Lobes::Layered(layers) => layers.diffuse,
+        }
+    }
+
+    /// [`Bsdf::value`] where that is the same for all directions above the surface.
+    pub fn matte(&self) -> Option<Rgb> {
+        match &self.lobes {
+            Lobes::Phong {
+                diffuse,
+                reflectance,
+                ..
+            } if reflectance.is_black() => Some(*diffuse * (1.0 / PI)),
+            _ => None,
+        }
+    }
+
     /// Without what mirror rays see of lights that have a surface, which would count twice; `None` where
     /// there is no such thing.
     pub fn without_mirrored(&self) -> Option<Self> {

@@ -119,6 +119,19 @@ impl Material {
         }
     }
 
+    /// How it scatters light where that is the same everywhere, and in all that it does: without textures, mirrors, glass,
+    /// holes, bumps or light of its own, and seen from both sides.
+    pub fn plain(&self) -> Option<Bsdf> {
+        let Surface::Phong(phong) = &self.surface else {
+            return None;
+        };
+        let is_alone = self.alpha_mode == AlphaMode::Opaque
+            && self.is_double_sided
+            && self.normal_map.is_none()
+            && self.emission.factor.is_black();
+        phong.plain().filter(|_| is_alone)
+    }
+
     /// Diffuse reflectance or base colour where `lookup` is.
     pub fn albedo(&self, lookup: &Lookup) -> Rgb {
         let color = match &self.surface {

@@ -40,11 +40,31 @@ impl Phong {
 
     /// How it scatters light where `lookup` is.
     pub fn bsdf(&self, lookup: &Lookup) -> Bsdf {
+        let diffuse = lookup.rgb(&self.diffuse) * lookup.vertex_rgb();
+        self.of(
+            diffuse,
+            lookup.rgb(&self.specular),
+            lookup.scalar(&self.exponent),
+        )
+    }
+
+    /// How it scatters light everywhere, without vertex colours; `None` where that differs from place to place, or where
+    /// it mirrors or lets light through.
+    pub fn plain(&self) -> Option<Bsdf> {
+        let has_textures = self.diffuse.texture.is_some()
+            || self.specular.texture.is_some()
+            || self.exponent.texture.is_some();
+        let is_plain = !has_textures && self.reflect.is_black() && self.transmit.is_black();
+        let bsdf = || self.of(self.diffuse.factor, self.specular.factor, self.exponent.factor);
+        is_plain.then(bsdf)
+    }
+
+    fn of(&self, diffuse: Rgb, reflectance: Rgb, exponent: f32) -> Bsdf {
         Bsdf {
             lobes: Lobes::Phong {
-                diffuse: lookup.rgb(&self.diffuse) * lookup.vertex_rgb(),
-                reflectance: lookup.rgb(&self.specular),
-                exponent: lookup.scalar(&self.exponent).max(0.0),
+                diffuse,
+                reflectance,
+                exponent: exponent.max(0.0),
             },
             specular: Specular {
                 reflect: self.reflect,

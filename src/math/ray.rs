@@ -20,6 +20,7 @@ pub struct Ray {
 
 impl Ray {
     /// A ray without an end.
+    #[inline(always)]
     pub fn new(origin: Vec3, direction: Vec3) -> Self {
         Self {
             origin,

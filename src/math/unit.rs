@@ -21,26 +21,28 @@ impl UnitVec3 {
     ///
     /// Divides by the largest component first, so that neither tiny nor huge vectors lose
     /// their direction to underflow or overflow.
+    #[inline(always)]
     pub fn normalize(v: Vec3) -> Option<Self> {
-        let largest = v.abs().max_element();
-        if !(largest > 0.0 && largest.is_finite()) || v.is_nan() {
-            return None;
-        }
+        let largest = larger(larger(v.x.abs(), v.y.abs()), v.z.abs());
+        let has_direction = largest > 0.0 && largest < f32::INFINITY && !v.is_nan();
         // Twice by steps that cannot overflow: 1/largest is infinite for subnormal components.
         let scaled = v / largest;
-        Some(Self(scaled / scaled.length()))
+        let unit = Self(scaled / scaled.length());
+        // Not an early return: rows of vectors are computed without a branch.
+        has_direction.then_some(unit)
     }
 
     /// As [`UnitVec3::normalize`], for a vector in double precision.
+    #[inline(always)]
     pub fn normalize_f64(v: DVec3) -> Option<Self> {
-        let largest = v.abs().max_element();
-        if !(largest > 0.0 && largest.is_finite()) {
-            return None;
-        }
-        Self::normalize((v / largest).as_vec3())
+        let largest = larger(larger(v.x.abs(), v.y.abs()), v.z.abs());
+        let has_direction = largest > 0.0 && largest < f64::INFINITY;
+        let unit = Self::normalize((v / largest).as_vec3());
+        unit.filter(|_| has_direction)
     }
 
     /// Takes `v` as it is. Its length must be 1 within 1e-4 (checked in debug builds).
+    #[inline(always)]
     pub fn from_normalized(v: Vec3) -> Self {
         debug_assert!(
             (v.length_squared() - 1.0).abs() < 2e-4,
@@ -53,6 +55,12 @@ impl UnitVec3 {
     pub fn get(self) -> Vec3 {
         self.0
     }
+}
+
+/// `f32::max` and `f64::max` of what is no NaN, in a single instruction.
+#[inline(always)]
+fn larger<T: PartialOrd>(a: T, b: T) -> T {
+    if a > b { a } else { b }
 }
 
 impl Deref for UnitVec3 {

@@ -6,10 +6,12 @@
 
 mod defects;
 mod emission;
+mod facet;
 mod geometry;
 mod leaks;
 mod left_out;
 mod placement;
+mod plain;
 mod surface;
 
 use std::cell::RefCell;
@@ -21,6 +23,7 @@ use crate::camera::Camera;
 use crate::color::Rgb;
 use crate::import::{WarningCode, Warnings};
 use crate::light::Light;
+use crate::material::Bsdf;
 use crate::math::{Aabb, DAffine3, DVec3, Mat3, Ray, UnitVec3, Vec3, gamma};
 use crate::scene::{Background, Keep, LeftOut, MeshId, Omission, Placed, Scene};
 
@@ -29,6 +32,7 @@ pub use emission::{EmissiveRun, TriangleId};
 use geometry::Geometry;
 pub use leaks::Leaks;
 pub use placement::Placement;
+pub use plain::PlainRow;
 pub use surface::Surface;
 
 /// A scene that is ready to be rendered.
@@ -51,6 +55,8 @@ pub struct PreparedScene<'a> {
     normal_matrices: Vec<Mat3>,
     /// Per instance of the scene: -1 where its transform mirrors, else 1.
     orientation: Vec<f32>,
+    /// Per instance of the scene: how its surface scatters light, where it is plain.
+    plain: Vec<Option<Bsdf>>,
     /// Whether blockers are asked for their opacity.
     has_transparency: bool,
 }
@@ -126,6 +132,9 @@ fn prepare_all(scene: &Scene, builder: Builder, flatten_budget: u64, keep: Keep)
             .instances
             .iter()
             .map(|i| i.transform.matrix3.determinant().signum() as f32)
+            .collect(),
+        plain: (scene.instances.iter())
+            .map(|instance| plain::plain(scene, instance))
             .collect(),
         has_transparency: asks_all || !scene.instances.iter().all(|i| scene.is_opaque(i)),
         geometry,

@@ -2,7 +2,7 @@
 
 use crate::bvh::Hit;
 use crate::color::Rgb;
-use crate::interaction::{Interaction, rounding_error};
+use crate::interaction::Interaction;
 use crate::material::{
     AlphaMode, Bsdf, BsdfSample, Lookup, MAX_UV_SETS, Material, NormalMap, View, reflect, refract,
 };
@@ -11,6 +11,7 @@ use crate::scene::{Instance, Mesh};
 use crate::texture::{Encoding, TextureRef};
 
 use super::PreparedScene;
+use super::facet::{Facet, bulge, facing, smooth_normal};
 use super::geometry::Placing;
 
 /// What a ray met: where, of what material, and what textures are read with.
@@ -111,7 +112,7 @@ impl Surface<'_> {
 /// A hit traced back to the scene's own triangle.
 pub(super) struct Located<'a> {
     instance: &'a Instance,
-    instance_number: u32,
+    pub instance_number: u32,
     pub mesh: &'a Mesh,
     pub corners: [u32; 3],
     /// Weights of the corners; they add up to 1.
@@ -128,10 +129,6 @@ impl Located<'_> {
 }
 
 fn mix2(a: Vec2, wa: f32, b: Vec2, wb: f32, c: Vec2, wc: f32) -> Vec2 {
-    a * wa + b * wb + c * wc
-}
-
-fn mix3(a: Vec3, wa: f32, b: Vec3, wb: f32, c: Vec3, wc: f32) -> Vec3 {
     a * wa + b * wb + c * wc
 }
 
@@ -234,29 +231,24 @@ impl<'a> PreparedScene<'a> {
 
         let vertices = self.vertices(hit);
         let edges = [vertices[1] - vertices[0], vertices[2] - vertices[0]];
-        let (u, v) = (f64::from(hit.u), f64::from(hit.v));
-        let exact = vertices[0] + edges[0] * u + edges[1] * v;
-        let point = exact.as_vec3();
         let wo = UnitVec3::normalize(-ray.direction).unwrap_or(UnitVec3::Z);
-
-        let outward = UnitVec3::normalize_f64(edges[0].cross(edges[1])).unwrap_or(wo);
-        let outward = if self.orientation(&at) < 0.0 {
-            -outward
-        } else {
-            outward
+        let facet = Facet::new(&vertices, hit.u, hit.v, wo, self.orientation(&at));
+        let (smooth, height) = match self.vertex_normals(&at) {
+            Some(normals) => (
+                smooth_normal(&facet, &normals, at.weights),
+                bulge(&facet, &vertices, &normals, at.weights),
+            ),
+            None => (facet.outward, 0.0),
         };
-        let is_front = outward.dot(*wo) >= 0.0;
-        let geometric_normal = if is_front { outward } else { -outward };
-        let smooth = self.smooth_normal(&at).unwrap_or(outward);
-        let height = self.bulge(&at, &vertices, exact, outward, is_front);
-        let bent = |map: Option<&NormalMap>| match map {
-            Some(map) => self.bumped(map, &at, &lookup, edges, smooth),
-            None => smooth,
+        let interaction = facet.interaction(smooth, height, wo);
+        let bent = |map: &NormalMap| {
+            let normal = self.bumped(map, &at, &lookup, edges, smooth);
+            facing(normal, facet.geometric_normal, wo)
         };
-        let seen = |normal| facing(normal, geometric_normal, wo);
-        let shading_normal = seen(bent(material.normal_map.as_ref()));
+        let unbent = interaction.shading_normal;
+        let shading_normal = material.normal_map.as_ref().map_or(unbent, bent);
         let coat_normal = match material.has_coat() {
-            true => seen(bent(material.coat_normal_map())),
+            true => material.coat_normal_map().map_or(unbent, bent),
             false => shading_normal,
         };
         let grain = material.grain(&lookup).and_then(|grain| {
@@ -270,14 +262,9 @@ impl<'a> PreparedScene<'a> {
         Surface {
             bsdf: material.bsdf(&lookup),
             interaction: Interaction {
-                point,
-                point_error: self.point_error(hit, ray, point),
-                smooth_point: height
-                    .map(|height| (exact + geometric_normal.as_dvec3() * height).as_vec3()),
-                geometric_normal,
+                point_error: self.point_error(hit, ray, &interaction),
                 shading_normal,
-                wo,
-                is_front,
+                ..interaction
             },
             frame: grain.unwrap_or_else(|| Frame::around(shading_normal)),
             coat_normal,
@@ -302,58 +289,20 @@ impl<'a> PreparedScene<'a> {
 
     /// Where a triangle is traced as it is, its points are rounded once. A ray to an instance is
     /// rounded on its way into the instance's coordinates too, and so is all that starts there.
-    fn point_error(&self, hit: &Hit, ray: &Ray, point: Vec3) -> Vec3 {
+    fn point_error(&self, hit: &Hit, ray: &Ray, at: &Interaction) -> Vec3 {
         match &self.geometry.traced[hit.instance as usize].placing {
-            Placing::Flattened(_) => rounding_error(point),
+            Placing::Flattened(_) => at.point_error,
             Placing::Instanced { error, .. } => {
-                rounding_error(point) + error.bound(ray.origin.abs().max(point.abs()))
+                at.point_error + error.bound(ray.origin.abs().max(at.point.abs()))
             }
         }
     }
 
-    /// The interpolated vertex normal, pointing outwards; `None` where the mesh has none.
-    fn smooth_normal(&self, at: &Located) -> Option<UnitVec3> {
+    /// The vertex normals of the triangle's corners, pointing outwards, of any length; `None` where the mesh has none.
+    pub(super) fn vertex_normals(&self, at: &Located) -> Option<[Vec3; 3]> {
         let normals = at.mesh.normals();
-        if normals.is_empty() {
-            return None;
-        }
-        let normal = at.interpolate(normals, mix3);
-        UnitVec3::normalize(self.normal_matrices[at.instance_number as usize] * normal)
-    }
-
-    /// How far above `point` of its triangle the surface lies that the vertex normals describe, on the side that is seen;
-    /// `None` where it does not bulge out on that side.
-    ///
-    /// Each vertex gives a plane across its normal; the height is that of the planes above `point`, weighted as
-    /// the normals are (Hanika 2021, "Hacking the Shadow Terminator"). Unlike there only the part
-    /// across the triangle counts, so that nothing beside it comes to be in between.
-    fn bulge(
-        &self,
-        at: &Located,
-        vertices: &[DVec3; 3],
-        point: DVec3,
-        outward: UnitVec3,
-        is_front: bool,
-    ) -> Option<f64> {
-        /// Heights below this share of the distance of the vertex are rounding of its normal.
-        const LEAST_SLOPE: f64 = 1e-6;
-        let normals = at.mesh.normals();
-        if normals.is_empty() {
-            return None;
-        }
         let matrix = &self.normal_matrices[at.instance_number as usize];
-        let (side, outward) = (if is_front { 1.0 } else { -1.0 }, outward.as_dvec3());
-        let mut height = 0.0;
-        for (k, vertex) in vertices.iter().enumerate() {
-            let normal = (*matrix * normals[at.corners[k] as usize]).as_dvec3();
-            let (way, length) = (point - *vertex, normal.length());
-            let above = -side * way.dot(normal);
-            let lift = outward.dot(normal);
-            if lift > 0.0 && above > LEAST_SLOPE * length * way.length() {
-                height += f64::from(at.weights[k]) * above * lift / (length * length);
-            }
-        }
-        (height > 0.0 && height.is_finite()).then_some(height)
+        (!normals.is_empty()).then(|| at.corners.map(|i| *matrix * normals[i as usize]))
     }
 
     /// `normal` bent by a normal map.
@@ -449,20 +398,4 @@ fn frame_along(normal: UnitVec3, tangent: Vec3, handedness: f32) -> Option<Frame
         bitangent: normal.cross(*tangent) * handedness.signum(),
         normal,
     })
-}
-
-/// `normal` on the side of the surface that the viewer is on, and bent so far towards the viewer
-/// that it faces it: shading normals may lean over the horizon, and nothing is seen from there.
-fn facing(normal: UnitVec3, geometric: UnitVec3, wo: UnitVec3) -> UnitVec3 {
-    const LEAST_COSINE: f32 = 1e-3;
-    let normal = if normal.dot(*geometric) < 0.0 {
-        -normal
-    } else {
-        normal
-    };
-    let cos = normal.dot(*wo);
-    if cos >= LEAST_COSINE {
-        return normal;
-    }
-    UnitVec3::normalize(*normal + *wo * (LEAST_COSINE - cos)).unwrap_or(geometric)
 }

@@ -104,7 +104,7 @@ pub struct Settings {
     /// Scattering events of a path: 1 is direct light only.
     pub max_depth: u32,
     /// Whether shadow rays start on the smooth surface that vertex normals describe
-    /// ([`crate::interaction::Interaction::shadow_ray`]), and not on the triangle.
+    /// ([`crate::interaction::LitSide`]), and not on the triangle.
     pub shadow_terminator: bool,
     /// Shadow rays per shading point, in place of what each light says.
     pub light_samples: Option<u32>,

@@ -1,18 +1,20 @@
 //! Local shading, shadows, mirrors and glass
 //! (Whitted 1980, "An Improved Illumination Model for Shaded Display").
 
+mod plain;
+
+use self::plain::Plain;
+use super::visibility::{straight_through, transmittance};
+use super::{CameraSample, Integrator, RayKind, RayLog, RayRecord, Sight, Source, light_samples};
 use crate::bvh::Hit;
 use crate::color::Rgb;
-use crate::interaction::Interaction;
+use crate::interaction::{Interaction, LitSide};
 use crate::light::{Light, LightSample, ShadowEnd};
 use crate::material::{Bsdf, View, reflect, refract};
-use crate::math::{Ray, Vec3};
+use crate::math::{ROW, Ray, Vec3};
 use crate::prepare::{PreparedScene, Surface};
 use crate::sampling::Sampler;
 use crate::scene::Settings;
-
-use super::visibility::{straight_through, transmittance};
-use super::{CameraSample, Integrator, RayKind, RayLog, RayRecord, Sight, Source, light_samples};
 
 /// Rays that count for less than this in every channel are not followed: what is cut off is at
 /// most this share of what they would have brought back.
@@ -42,6 +44,19 @@ struct Pending {
     depth: u32,
     /// Which vertex of the tree of rays it leads to: 1 is what the camera sees ([`child`]).
     vertex: u32,
+}
+
+impl Pending {
+    /// What is kept of it where it first meets `hit`.
+    fn record(&self, hit: Option<&Hit>) -> RayRecord {
+        RayRecord {
+            kind: self.kind,
+            depth: self.depth,
+            ray: self.ray,
+            t: hit.map(|h| h.t),
+            weight: self.weight,
+        }
+    }
 }
 
 /// A light whose surface a ray meets.
@@ -84,6 +99,20 @@ struct Shadow {
     value: Rgb,
 }
 
+impl Work {
+    /// Adds a shadow ray from a vertex of the sample at this place, `depth` scattering events from the camera, and
+    /// what the light adds to it.
+    fn add_shadow(&mut self, ray: Ray, sample: usize, light: u32, depth: u32, value: Rgb) {
+        self.shadow_rays.push(ray);
+        self.shadows.push(Shadow {
+            sample,
+            light,
+            depth,
+            value,
+        });
+    }
+}
+
 /// The vertex that a ray leads to which leaves `vertex` by the way of `branch`, an odd number: a
 /// step of a linear congruential generator, so that even the deepest have numbers of their own.
 fn child(vertex: u32, branch: u32) -> u32 {
@@ -119,13 +148,7 @@ impl<'a> Whitted<'a> {
         log: &mut RayLog,
         work: &mut Work,
     ) -> Rgb {
-        log.add(from.kind, || RayRecord {
-            kind: from.kind,
-            depth: from.depth,
-            ray: from.ray,
-            t: first.map(|h| h.t),
-            weight: from.weight,
-        });
+        log.add(from.kind, || from.record(first.as_ref()));
         let mut total = Rgb::BLACK;
         let mut weight = from.weight;
         // What no surface covers of the ray, whatever glass lets through.
@@ -226,17 +249,10 @@ impl<'a> Whitted<'a> {
                     .sample(at.point, u)
                     .and_then(|sample| self.direct(&at, bsdf, &view, &sample));
                 if let Some((ray, value)) = shadow {
-                    work.shadow_rays.push(ray);
-                    work.shadows.push(Shadow {
-                        sample: work.sample,
-                        light: number,
-                        depth: from.depth,
-                        value: from.weight * value / count as f32,
-                    });
-                    if work.shadow_rays.len() == MOST_WAITING {
-                        self.light_up(work, log);
-                        log.turn_to(work.sample);
-                    }
+                    let value = from.weight * value / count as f32;
+                    work.add_shadow(ray, work.sample, number, from.depth, value);
+                    self.light_up_if_full(work, log);
+                    log.turn_to(work.sample);
                 }
             }
         }
@@ -251,37 +267,23 @@ impl<'a> Whitted<'a> {
         view: &View,
         sample: &LightSample,
     ) -> Option<(Ray, Rgb)> {
-        let cos_i = at.shading_normal.dot(*sample.wi);
-        // Light from behind shows on what scatters it through; both normals must agree where it is.
-        let is_behind = cos_i <= 0.0;
-        if is_behind && !bsdf.is_translucent() {
-            return None;
+        let mut way = way_to(&at.lit_side(), sample);
+        if !way.is_open && bsdf.is_translucent() {
+            way = way_through(at, sample);
         }
-        let is_hidden = |direction: Vec3| match is_behind {
-            true => at.geometric_normal.dot(direction) >= 0.0,
-            false => !at.can_see(direction),
-        };
-        if is_hidden(*sample.wi) {
-            return None;
-        }
-        // The end of the shadow ray may be below the horizon of a point that sees the centre.
-        if let ShadowEnd::Point(end) = sample.shadow
-            && is_hidden(end - at.point)
-        {
+        if !way.is_open {
             return None;
         }
         let scattered = bsdf.shown(view, sample.wi);
-        let unshadowed = sample.weight * scattered * cos_i.abs();
-        if unshadowed.is_black() {
-            return None;
+        let unshadowed = sample.weight * scattered * way.cos;
+        (!unshadowed.is_black()).then_some((way.ray, unshadowed))
+    }
+
+    /// Traces the shadow rays that wait, if they are many.
+    fn light_up_if_full(&self, work: &mut Work, log: &mut RayLog) {
+        if work.shadow_rays.len() >= MOST_WAITING {
+            self.light_up(work, log);
         }
-        let ray = match (sample.shadow, is_behind) {
-            (ShadowEnd::Point(target), false) => at.shadow_ray_to(target),
-            (ShadowEnd::Point(target), true) => at.spawn_ray_to(target),
-            (ShadowEnd::Direction(direction), false) => at.shadow_ray(*direction),
-            (ShadowEnd::Direction(direction), true) => at.spawn_ray(*direction),
-        };
-        Some((ray, unshadowed))
     }
 
     /// Traces the shadow rays, and adds what comes through to what their samples are lit by.
@@ -379,6 +381,48 @@ impl<'a> Whitted<'a> {
     }
 }
 
+/// A way from a surface to a light.
+struct Way {
+    /// The shadow ray.
+    ray: Ray,
+    /// Magnitude of the cosine of the light's direction with the shading normal.
+    cos: f32,
+    /// Whether the light comes from the side that it is for, by either normal.
+    is_open: bool,
+}
+
+/// The way to what a light was sampled at in front of the surface.
+#[inline(always)]
+fn way_to(at: &LitSide, sample: &LightSample) -> Way {
+    let cos = at.shading_normal.dot(*sample.wi);
+    let (ray, is_end_seen) = match sample.shadow {
+        // The end of the shadow ray may be below the horizon of a point that sees the centre.
+        ShadowEnd::Point(end) => (at.shadow_ray_to(end), at.can_see(end - at.point)),
+        ShadowEnd::Direction(direction) => (at.shadow_ray(*direction), true),
+    };
+    Way {
+        ray,
+        cos,
+        // Not `&&`: rows are computed without a branch.
+        is_open: (cos > 0.0) & at.can_see(*sample.wi) & is_end_seen,
+    }
+}
+
+/// As [`way_to`], for light from behind that is scattered through the surface.
+fn way_through(at: &Interaction, sample: &LightSample) -> Way {
+    let cos = at.shading_normal.dot(*sample.wi);
+    let is_behind = |direction: Vec3| at.geometric_normal.dot(direction) < 0.0;
+    let (ray, is_end_behind) = match sample.shadow {
+        ShadowEnd::Point(end) => (at.spawn_ray_to(end), is_behind(end - at.point)),
+        ShadowEnd::Direction(direction) => (at.spawn_ray(*direction), true),
+    };
+    Way {
+        ray,
+        cos: -cos,
+        is_open: cos <= 0.0 && is_behind(*sample.wi) && is_end_behind,
+    }
+}
+
 impl Integrator for Whitted<'_> {
     fn radiance(&self, ray: &Ray, sampler: &Sampler, log: &mut RayLog) -> Rgb {
         let sample = CameraSample {
@@ -398,8 +442,13 @@ impl Integrator for Whitted<'_> {
             lit: vec![Rgb::BLACK; samples.len()],
             ..Work::default()
         };
+        let mut plain = Plain::NONE;
         let start = radiances.len();
         for (place, (CameraSample { ray, sampler }, hit)) in samples.iter().zip(hits).enumerate() {
+            if place % ROW == 0 {
+                self.light_plain(&mut plain, samples, &mut work, log);
+                plain = Plain::NONE;
+            }
             work.sample = place;
             log.turn_to(place);
             let camera = Pending {
@@ -409,6 +458,11 @@ impl Integrator for Whitted<'_> {
                 depth: 0,
                 vertex: 1,
             };
+            let ambient = |hit| self.see_plain(&camera, hit, place, &mut plain, log);
+            if let Some(ambient) = hit.as_ref().and_then(ambient) {
+                radiances.push(ambient);
+                continue;
+            }
             let mut total = self.follow(&camera, hit, sampler, log, &mut work);
             while let Some(next) = work.pending.pop() {
                 let hit = self.scene.closest_hit(&next.ray, None);
@@ -416,6 +470,7 @@ impl Integrator for Whitted<'_> {
             }
             radiances.push(total);
         }
+        self.light_plain(&mut plain, samples, &mut work, log);
         self.light_up(&mut work, log);
         for (radiance, lit) in radiances[start..].iter_mut().zip(work.lit) {
             *radiance += lit;

@@ -1,0 +1,199 @@
+//! Direct light on plain surfaces that the camera sees, for all samples of a batch at once.
+//!
+//! It is what [`Whitted::follow`] comes to there, bit for bit, with the arithmetic done in rows.
+
+use super::{Pending, Whitted, Work, way_to};
+use crate::bvh::Hit;
+use crate::color::Rgb;
+use crate::integrate::{CameraSample, RayLog, Sight, Source};
+use crate::light::{Light, LightSampleRow};
+use crate::material::Bsdf;
+use crate::math::{ROW, Ray, Row, RowJob, Vec2, VectorRow, widely};
+use crate::prepare::PlainRow;
+use crate::sampling::Sampler;
+
+/// Below so many samples the arithmetic of each by itself is quicker than that of a whole row.
+const FEW: usize = 12;
+
+/// Camera samples that see plain surfaces.
+pub(super) struct Plain {
+    surfaces: PlainRow,
+    /// Their places among those that are taken together.
+    places: [usize; ROW],
+}
+
+impl Plain {
+    pub const NONE: Self = Self {
+        surfaces: PlainRow::EMPTY,
+        places: [0; ROW],
+    };
+}
+
+/// Shadow rays of a row of points to one light.
+struct WayRow {
+    origin: VectorRow,
+    direction: VectorRow,
+    t_max: Row,
+    /// Cosine at the surface.
+    cos: Row,
+    is_open: [bool; ROW],
+}
+
+impl WayRow {
+    const NONE: Self = Self {
+        origin: VectorRow::ZERO,
+        direction: VectorRow::ZERO,
+        t_max: [0.0; ROW],
+        cos: [0.0; ROW],
+        is_open: [false; ROW],
+    };
+
+    #[inline(always)]
+    fn find(&mut self, i: usize, surfaces: &PlainRow, samples: &LightSampleRow) {
+        let at = surfaces.lit_side(i);
+        let way = way_to(&at, &samples.get(i));
+        let is_seen = at.shading_normal.dot(*surfaces.wo(i)) > 0.0;
+        self.is_open[i] = samples.is_some(i) & is_seen & way.is_open;
+        self.origin.set(i, way.ray.origin);
+        self.direction.set(i, way.ray.direction);
+        self.t_max[i] = way.ray.t_max;
+        self.cos[i] = way.cos;
+    }
+
+    #[inline(always)]
+    fn ray(&self, i: usize) -> Ray {
+        Ray {
+            t_max: self.t_max[i],
+            ..Ray::new(self.origin.get(i), self.direction.get(i))
+        }
+    }
+}
+
+struct Find<'a> {
+    ways: &'a mut WayRow,
+    surfaces: &'a PlainRow,
+    samples: &'a LightSampleRow,
+}
+
+impl RowJob for Find<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        find_all(self.ways, self.surfaces, self.samples);
+    }
+}
+
+#[inline(always)]
+fn find_all(ways: &mut WayRow, surfaces: &PlainRow, samples: &LightSampleRow) {
+    for i in 0..ROW {
+        ways.find(i, surfaces, samples);
+    }
+}
+
+impl Whitted<'_> {
+    /// Adds a camera ray whose first `hit` is on a plain surface to `plain`, and returns the ambient light that the
+    /// surface sends back; its direct light is found by [`Self::light_plain`]. `None` where it has to be
+    /// followed.
+    pub(super) fn see_plain(
+        &self,
+        camera: &Pending,
+        hit: &Hit,
+        place: usize,
+        plain: &mut Plain,
+        log: &mut RayLog,
+    ) -> Option<Rgb> {
+        let ray = &camera.ray;
+        if self.max_depth == 0 || self.light_between(ray, 0.0, Some(hit)).is_some() {
+            return None;
+        }
+        let i = plain.surfaces.count();
+        if !self.scene.add_plain(&mut plain.surfaces, ray, hit) {
+            return None;
+        }
+        plain.places[i] = place;
+        log.add(camera.kind, || camera.record(Some(hit)));
+        log.see(Sight::Surface(*hit), 1.0);
+        let albedo = self.scene.plain_bsdf(&plain.surfaces, i).map(Bsdf::diffuse);
+        let ambient = self.scene.background.ambient * albedo.unwrap_or(Rgb::BLACK);
+        log.light(Source::Background, 1, Rgb::WHITE, ambient);
+        Some(ambient)
+    }
+
+    /// Sends the shadow rays from all of `plain` to all lights.
+    pub(super) fn light_plain(
+        &self,
+        plain: &mut Plain,
+        samples: &[CameraSample],
+        work: &mut Work,
+        log: &mut RayLog,
+    ) {
+        let Plain { surfaces, places } = plain;
+        let places = &places[..surfaces.count()];
+        if places.is_empty() {
+            return;
+        }
+        surfaces.locate(self.smooths_shadows);
+        let mut row = LightRow {
+            samples: LightSampleRow::NONE,
+            ways: WayRow::NONE,
+        };
+        for &number in &self.scene.shining {
+            let light = &self.scene.lights[number as usize];
+            let count = self.samples[number as usize];
+            for j in 0..count {
+                let u = |sampler: &Sampler| sampler.light(1, number, j, count);
+                row.sample(light, surfaces, |i| u(&samples[places[i]].sampler));
+                for (i, &place) in places.iter().enumerate() {
+                    if let Some((ray, value)) = self.direct_plain(surfaces, &row, i) {
+                        let value = value / count as f32;
+                        work.add_shadow(ray, place, number, 0, value);
+                    }
+                }
+                self.light_up_if_full(work, log);
+            }
+        }
+    }
+
+    /// What the sample of a light adds to sample `i` where nothing is in the way of a ray.
+    fn direct_plain(&self, surfaces: &PlainRow, row: &LightRow, i: usize) -> Option<(Ray, Rgb)> {
+        if !row.ways.is_open[i] {
+            return None;
+        }
+        let sample = row.samples.get(i);
+        let bsdf = self.scene.plain_bsdf(surfaces, i)?;
+        let scattered = bsdf.matte().unwrap_or_else(|| {
+            let normal = surfaces.lit_side(i).shading_normal;
+            bsdf.eval(normal, surfaces.wo(i), sample.wi)
+        });
+        let unshadowed = sample.weight * scattered * row.ways.cos[i];
+        (!unshadowed.is_black()).then(|| (row.ways.ray(i), unshadowed))
+    }
+}
+
+/// Samples of one light, and the shadow rays to them.
+struct LightRow {
+    samples: LightSampleRow,
+    ways: WayRow,
+}
+
+impl LightRow {
+    fn sample(&mut self, light: &Light, surfaces: &PlainRow, u: impl Fn(usize) -> Vec2) {
+        let Self { samples, ways } = self;
+        let count = surfaces.count();
+        let mut us = [Vec2::ZERO; ROW];
+        for (i, point) in us[..count].iter_mut().enumerate() {
+            *point = u(i);
+        }
+        light.sample_row(surfaces.points(), &us, count, samples);
+        if count < FEW {
+            (0..count).for_each(|i| ways.find(i, surfaces, samples));
+        } else {
+            widely(Find {
+                ways,
+                surfaces,
+                samples,
+            });
+        }
+    }
+}

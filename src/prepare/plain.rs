@@ -1,0 +1,203 @@
+//! Plain surfaces: those that scatter light the same way everywhere and do nothing else. What the camera sees of
+//! them is computed for rows of hits.
+
+use super::PreparedScene;
+use super::facet::{Facet, bulge, smooth_normal};
+use super::geometry::Placing;
+use crate::bvh::Hit;
+use crate::interaction::LitSide;
+use crate::material::Bsdf;
+use crate::math::{DVec3, ROW, Ray, Row, RowJob, UnitVec3, VectorRow, widely};
+use crate::scene::{Instance, Scene};
+
+/// How the surface of `instance` scatters light, where that is the same everywhere and in all there is to it:
+/// no textures, vertex colours, mirrors, glass, holes or light of its own.
+pub(super) fn plain(scene: &Scene, instance: &Instance) -> Option<Bsdf> {
+    let has_colors = !scene.mesh(instance.mesh).colors().is_empty();
+    let material = &scene.materials[instance.material.0 as usize];
+    material.plain().filter(|_| !has_colors)
+}
+
+/// Hits on plain surfaces, and what shading reads there.
+#[derive(Debug)]
+pub struct PlainRow {
+    /// Hits are 0 to this.
+    count: usize,
+    /// By scene instance.
+    instances: [u32; ROW],
+    corners: [VectorRow; 3],
+    /// Weights of the second and third corner.
+    weights: [Row; 2],
+    /// Against the direction of the rays.
+    back: VectorRow,
+    orientation: Row,
+    /// Vertex normals by corner, where some mesh has them.
+    normals: [VectorRow; 3],
+    has_normals: [bool; ROW],
+    is_smooth: bool,
+    seen: SeenRow,
+}
+
+/// [`LitSide`]s by field, and where the viewer is.
+#[derive(Debug)]
+struct SeenRow {
+    point: VectorRow,
+    shadow_origin: VectorRow,
+    is_bulging: [bool; ROW],
+    geometric_normal: VectorRow,
+    shading_normal: VectorRow,
+    wo: VectorRow,
+}
+
+impl PlainRow {
+    /// Without hits.
+    pub const EMPTY: Self = Self {
+        count: 0,
+        instances: [0; ROW],
+        corners: [VectorRow::ZERO; 3],
+        weights: [[0.0; ROW]; 2],
+        back: VectorRow::ZERO,
+        orientation: [1.0; ROW],
+        normals: [VectorRow::ZERO; 3],
+        has_normals: [false; ROW],
+        is_smooth: false,
+        seen: SeenRow {
+            point: VectorRow::ZERO,
+            shadow_origin: VectorRow::ZERO,
+            is_bulging: [false; ROW],
+            geometric_normal: VectorRow::ZERO,
+            shading_normal: VectorRow::ZERO,
+            wo: VectorRow::ZERO,
+        },
+    };
+
+    /// How many hits there are.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The points that were hit, once they are [`PlainRow::locate`]d.
+    pub fn points(&self) -> &VectorRow {
+        &self.seen.point
+    }
+
+    /// What lights need to know of hit `i`, once they are [`PlainRow::locate`]d: the same bits as in
+    /// [`PreparedScene::surface`].
+    #[inline(always)]
+    pub fn lit_side(&self, i: usize) -> LitSide {
+        let seen = &self.seen;
+        LitSide {
+            point: seen.point.get(i),
+            shadow_origin: seen.shadow_origin.get(i),
+            is_bulging: seen.is_bulging[i],
+            geometric_normal: UnitVec3::from_normalized(seen.geometric_normal.get(i)),
+            shading_normal: UnitVec3::from_normalized(seen.shading_normal.get(i)),
+        }
+    }
+
+    /// Where the viewer of hit `i` is, once they are [`PlainRow::locate`]d.
+    #[inline(always)]
+    pub fn wo(&self, i: usize) -> UnitVec3 {
+        UnitVec3::from_normalized(self.seen.wo.get(i))
+    }
+
+    /// Computes what shading reads at all hits; with `is_bulging` shadows start on the surface that vertex normals
+    /// describe.
+    pub fn locate(&mut self, is_bulging: bool) {
+        widely(Locate(self, is_bulging));
+    }
+
+    #[inline(always)]
+    fn locate_one<const IS_SMOOTH: bool>(&mut self, i: usize, is_bulging: bool) {
+        let corners: [DVec3; 3] = [
+            self.corners[0].get(i).as_dvec3(),
+            self.corners[1].get(i).as_dvec3(),
+            self.corners[2].get(i).as_dvec3(),
+        ];
+        let [u, v] = [self.weights[0][i], self.weights[1][i]];
+        let wo = UnitVec3::normalize(self.back.get(i)).unwrap_or(UnitVec3::Z);
+        let facet = Facet::new(&corners, u, v, wo, self.orientation[i]);
+        let (mut smooth, mut height) = (facet.outward, 0.0);
+        if IS_SMOOTH {
+            let normals = [
+                self.normals[0].get(i),
+                self.normals[1].get(i),
+                self.normals[2].get(i),
+            ];
+            let weights = [1.0 - u - v, u, v];
+            let normal = smooth_normal(&facet, &normals, weights);
+            let bulge = bulge(&facet, &corners, &normals, weights);
+            smooth = if self.has_normals[i] { normal } else { smooth };
+            height = if self.has_normals[i] & is_bulging { bulge } else { height };
+        }
+        let at = facet.interaction(smooth, height, wo).lit_side();
+        let seen = &mut self.seen;
+        seen.point.set(i, at.point);
+        seen.shadow_origin.set(i, at.shadow_origin);
+        seen.is_bulging[i] = at.is_bulging;
+        seen.geometric_normal.set(i, *at.geometric_normal);
+        seen.shading_normal.set(i, *at.shading_normal);
+        seen.wo.set(i, *wo);
+    }
+}
+
+struct Locate<'a>(&'a mut PlainRow, bool);
+
+impl RowJob for Locate<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        // Past the last hit there is what was there before: no harm in computing it.
+        if self.0.is_smooth {
+            locate_all::<true>(self.0, self.1);
+        } else {
+            locate_all::<false>(self.0, self.1);
+        }
+    }
+}
+
+#[inline(always)]
+fn locate_all<const IS_SMOOTH: bool>(row: &mut PlainRow, is_bulging: bool) {
+    for i in 0..ROW {
+        row.locate_one::<IS_SMOOTH>(i, is_bulging);
+    }
+}
+
+impl PreparedScene<'_> {
+    /// Adds `hit` of `ray` to `row` where the surface is plain; whether it is. There is room for [`ROW`].
+    pub fn add_plain(&self, row: &mut PlainRow, ray: &Ray, hit: &Hit) -> bool {
+        let traced = &self.geometry.traced[hit.instance as usize];
+        let at = self.locate(hit);
+        let is_flat = matches!(traced.placing, Placing::Flattened(_));
+        if !is_flat || self.plain[at.instance_number as usize].is_none() {
+            return false;
+        }
+        let i = row.count;
+        row.count += 1;
+        let tree = &self.geometry.trees[traced.tree as usize];
+        let corners = tree.indices[hit.triangle as usize];
+        for (row, corner) in row.corners.iter_mut().zip(corners) {
+            row.set(i, tree.positions[corner as usize]);
+        }
+        row.weights[0][i] = hit.u;
+        row.weights[1][i] = hit.v;
+        row.back.set(i, -ray.direction);
+        row.orientation[i] = self.orientation(&at);
+        row.instances[i] = at.instance_number;
+        let normals = self.vertex_normals(&at);
+        row.has_normals[i] = normals.is_some();
+        if let Some(normals) = normals {
+            row.is_smooth = true;
+            for (row, normal) in row.normals.iter_mut().zip(normals) {
+                row.set(i, normal);
+            }
+        }
+        true
+    }
+
+    /// How hit `i` of `row` scatters light.
+    pub fn plain_bsdf(&self, row: &PlainRow, i: usize) -> Option<&Bsdf> {
+        self.plain[row.instances[i] as usize].as_ref()
+    }
+}
