@@ -1,6 +1,6 @@
 //! Cameras: from a point on the film to a ray.
 
-use crate::math::{Mat3, Ray, UVec2, UnitVec3, Vec2, Vec3};
+use crate::math::{Mat3, ROW, Ray, RowJob, UVec2, UnitVec3, Vec2, Vec3, VectorRow, widely};
 
 /// A camera at a place, looking along a direction.
 #[derive(Clone, Copy, Debug)]
@@ -93,6 +93,11 @@ impl Camera {
         }
     }
 
+    #[inline(always)]
+    fn to_world(&self, v: Vec3) -> Vec3 {
+        *self.right * v.x + *self.up * v.y + *self.back * v.z
+    }
+
     /// What makes its rays through a film of `size` pixels.
     pub fn rays(&self, size: UVec2) -> CameraRays<'_> {
         CameraRays {
@@ -118,9 +123,20 @@ pub struct CameraRays<'a> {
 }
 
 impl CameraRays<'_> {
+    /// [`Self::at`] of each place of a row, origins and directions.
+    pub fn row(&self, film: &[Vec2; ROW], lens: &[Vec2; ROW], rays: [&mut VectorRow; 2]) {
+        widely(CameraRow {
+            rays: self,
+            film,
+            lens,
+            row: rays,
+        });
+    }
+
     /// The ray through `film`, in pixels from the upper left corner of the film.
     ///
     /// `lens` is a point of the unit disk; a pinhole ignores it. The direction has length 1.
+    #[inline(always)]
     pub fn at(&self, film: Vec2, lens: Vec2) -> Ray {
         let Self { camera, size, .. } = self;
         // From -1 to 1 up the picture, and in the same measure across it.
@@ -138,11 +154,42 @@ impl CameraRays<'_> {
         } else {
             (origin, direction)
         };
-        let world = |v: Vec3| *camera.right * v.x + *camera.up * v.y + *camera.back * v.z;
         Ray::new(
-            camera.position + world(origin),
-            world(direction.normalize()),
+            camera.position + camera.to_world(origin),
+            camera.to_world(direction.normalize()),
         )
+    }
+}
+
+struct CameraRow<'a> {
+    rays: &'a CameraRays<'a>,
+    film: &'a [Vec2; ROW],
+    lens: &'a [Vec2; ROW],
+    row: [&'a mut VectorRow; 2],
+}
+
+impl RowJob for CameraRow<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let [origins, directions] = self.row;
+        camera_row(self.rays, self.film, self.lens, origins, directions);
+    }
+}
+
+#[inline(always)]
+fn camera_row(
+    rays: &CameraRays,
+    film: &[Vec2; ROW],
+    lens: &[Vec2; ROW],
+    origins: &mut VectorRow,
+    directions: &mut VectorRow,
+) {
+    for i in 0..ROW {
+        let ray = rays.at(film[i], lens[i]);
+        origins.set(i, ray.origin);
+        directions.set(i, ray.direction);
     }
 }
 

@@ -89,7 +89,7 @@ impl DiskLight {
     /// See [`super::Light::met`].
     pub fn met(&self, ray: &Ray) -> Option<(f32, Rgb)> {
         let center = self.center.as_dvec3() - ray.origin.as_dvec3();
-        let (t, from_center) = plane_hit(ray, center, self.exact_normal())?;
+        let (t, from_center) = plane_hit(ray, center, self.normal.as_dvec3())?;
         let radius = f64::from(self.radius);
         (!self.is_delta() && from_center.length_squared() <= radius * radius)
             .then_some((t, self.radiance))

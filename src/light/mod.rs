@@ -279,7 +279,7 @@ fn shadow_point(point: DVec3) -> Vec3 {
 }
 
 /// Where `ray` meets, from the front, the plane through `center` (relative to the ray's origin)
-/// across the unit vector `normal`: the ray's parameter there, and the place relative to `center`.
+/// across `normal`, whatever its length: the ray's parameter there, and the place relative to `center`.
 fn plane_hit(ray: &Ray, center: DVec3, normal: DVec3) -> Option<(f32, DVec3)> {
     let direction = ray.direction.as_dvec3();
     let approach = direction.dot(normal);

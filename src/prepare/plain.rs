@@ -71,6 +71,12 @@ impl PlainRow {
         },
     };
 
+    /// Takes all hits out.
+    pub fn clear(&mut self) {
+        self.count = 0;
+        self.is_smooth = false;
+    }
+
     /// How many hits there are.
     pub fn count(&self) -> usize {
         self.count

@@ -9,14 +9,14 @@ use crate::film::{CutOff, ErrorSums, Film, Pixel, RayCounts, Rect, RejectedSampl
 use crate::integrate::{
     Account, Aov, CameraSample, FirstSurface, Integrator, RayLog, Sight, Source,
 };
-use crate::math::{Ray, UVec2, Vec2, morton_pixel};
+use crate::math::{ROW, Ray, UVec2, Vec2, VectorRow, morton_pixel};
 use crate::sampling::Sampler;
 
 /// Pixels along the edge of a tile.
 pub(super) const TILE: u32 = 16;
 
 /// Samples that are taken together, and between two looks at the clock.
-const BATCH: usize = 64;
+const BATCH: usize = ROW;
 
 /// Numbers of samples of the two halves of a pixel.
 pub(super) type Halves = [u32; 2];
@@ -89,7 +89,12 @@ impl Tile {
         'pixels: for (i, pixel) in self.pixels_by_neighbourhood() {
             let is_beyond = foreground.is_beyond(pixel);
             for half in 0..2 {
-                for number in self.taken[i][half]..self.goal[i][half] {
+                let numbers = self.taken[i][half]..self.goal[i][half];
+                if numbers.is_empty() {
+                    continue;
+                }
+                let first = Sampler::of_set(&job.settings.sampling, pixel, half as u32);
+                for number in numbers {
                     if done % BATCH as u64 == 0 && (stop.is_cancelled() || stop.is_late()) {
                         break 'pixels;
                     }
@@ -103,8 +108,8 @@ impl Tile {
                         self.taken[i][half] += 1;
                         continue;
                     }
-                    batch.add(i, half, pixel, number);
-                    if batch.samples.len() == BATCH {
+                    batch.add(Place { i, half, pixel }, first.at(number));
+                    if batch.places.len() == BATCH {
                         self.take(job, &mut batch);
                     }
                 }
@@ -134,25 +139,21 @@ impl Tile {
         batch.trace();
         let all = (batch.places.iter().zip(&batch.samples)).zip(&batch.radiances);
         for (number, ((place, sample), value)) in all.enumerate() {
-            let Place {
-                i,
-                half,
-                index,
-                pixel,
-            } = *place;
+            let Place { i, half, pixel } = *place;
             if self.pixels[i].add_sample(half, *value) {
                 if let Some(account) = batch.log.accounts.get(number) {
                     self.add_layers(job, [i, half], Some(&sample.ray), account);
                 }
             } else {
                 self.rejected += 1;
+                let index = sample.sampler.index();
                 let sample = RejectedSample { pixel, index };
                 self.first_rejected = self.first_rejected.or(Some(sample));
             }
             self.taken[i][half] += 1;
         }
         batch.places.clear();
-        batch.samples.clear();
+        batch.samplers.clear();
     }
 
     /// Adds what `account` tells of a sample along `ray` to the layers, at a pixel's number and half; `None`
@@ -200,9 +201,10 @@ struct Batch<'a> {
     job: &'a Job<'a>,
     integrator: &'a dyn Integrator,
     rays: CameraRays<'a>,
-    samples: Vec<CameraSample>,
     /// Where each of them goes.
     places: Vec<Place>,
+    samplers: Vec<Sampler>,
+    samples: Vec<CameraSample>,
     radiances: Vec<Rgb>,
     log: RayLog,
 }
@@ -214,8 +216,6 @@ struct Place {
     i: usize,
     half: usize,
     pixel: UVec2,
-    /// Its index among all samples of the pixel.
-    index: u32,
 }
 
 impl<'a> Batch<'a> {
@@ -226,26 +226,27 @@ impl<'a> Batch<'a> {
             rays: job.camera.rays(job.settings.size),
             samples: Vec::with_capacity(BATCH),
             places: Vec::with_capacity(BATCH),
+            samplers: Vec::with_capacity(BATCH),
             radiances: Vec::with_capacity(BATCH),
             log: RayLog::told(account.map_or(Vec::new(), |account| vec![account.clone(); BATCH])),
         }
     }
 
-    /// Adds sample `number` of a half of a pixel.
-    fn add(&mut self, i: usize, half: usize, pixel: UVec2, number: u32) {
-        let sets = self.job.settings.sampling.pattern.sets();
-        let index = number * sets + half as u32;
-        let (ray, sampler) = camera_sample(self.job, &self.rays, pixel, index);
-        self.samples.push(CameraSample { ray, sampler });
-        self.places.push(Place {
-            i,
-            half,
-            pixel,
-            index,
-        });
+    fn add(&mut self, place: Place, sampler: Sampler) {
+        self.places.push(place);
+        self.samplers.push(sampler);
     }
 
     fn trace(&mut self) {
+        self.samples.clear();
+        let pixels = self.places.iter().map(|place| place.pixel);
+        camera_samples(
+            self.job,
+            &self.rays,
+            pixels,
+            &self.samplers,
+            &mut self.samples,
+        );
         self.radiances.clear();
         let told = self.log.accounts.iter_mut().take(self.samples.len());
         told.for_each(Account::clear);
@@ -261,6 +262,35 @@ fn add_share(objects: &mut Vec<(u32, [f64; 2])>, instance: u32, half: usize, sha
         objects.len() - 1
     });
     objects[at].1[half] += f64::from(share);
+}
+
+/// [`camera_sample`] of each of `samplers` of `pixels`, added to `samples`.
+fn camera_samples(
+    job: &Job,
+    rays: &CameraRays<'_>,
+    pixels: impl Iterator<Item = UVec2>,
+    samplers: &[Sampler],
+    samples: &mut Vec<CameraSample>,
+) {
+    let mut film = [Vec2::ZERO; ROW];
+    let mut lens = [Vec2::ZERO; ROW];
+    Sampler::camera_row(samplers.iter(), &mut film);
+    for (film, pixel) in film.iter_mut().zip(pixels) {
+        *film = film_position(pixel, *film);
+    }
+    if job.camera.lens_radius > 0.0 {
+        for (lens, sampler) in lens.iter_mut().zip(samplers) {
+            *lens = sampler.lens();
+        }
+    }
+    let (mut origins, mut directions) = (VectorRow::ZERO, VectorRow::ZERO);
+    rays.row(&film, &lens, [&mut origins, &mut directions]);
+    for (i, sampler) in samplers.iter().enumerate() {
+        samples.push(CameraSample {
+            ray: Ray::new(origins.get(i), directions.get(i)),
+            sampler: *sampler,
+        });
+    }
 }
 
 /// Sample `index` of `pixel`: its ray from the camera, and its other numbers.

@@ -6,7 +6,7 @@ use crate::math::Vec2;
 ///
 /// The numbers `key.with(0)`, `key.with(1)`, … are the SplitMix64 sequence that starts at `key`
 /// (Steele et al. 2014, "Fast Splittable Pseudorandom Number Generators").
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Key(u64);
 
 impl Key {
@@ -16,6 +16,7 @@ impl Key {
     }
 
     /// The key of this one's words and one more.
+    #[inline(always)]
     pub fn with(self, word: u64) -> Self {
         const GOLDEN_RATIO: u64 = 0x9e37_79b9_7f4a_7c15;
         let weyl = word.wrapping_add(1).wrapping_mul(GOLDEN_RATIO);
@@ -23,6 +24,7 @@ impl Key {
     }
 
     /// 64 random bits.
+    #[inline(always)]
     pub fn bits(self) -> u64 {
         self.0
     }
@@ -40,6 +42,7 @@ fn unit_interval(bits: u64) -> f32 {
 }
 
 /// A bijection of 64 bits in which each bit depends on all (Stafford 2011, "Better Bit Mixing", variant 13).
+#[inline(always)]
 pub fn mix(mut x: u64) -> u64 {
     x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

@@ -6,6 +6,7 @@
 mod cells;
 mod key;
 mod pattern;
+mod row;
 mod sampler;
 mod sobol;
 mod warp;

@@ -20,22 +20,24 @@ use super::{Pattern, SamplingConfig, Target};
 /// ([`Pattern::sets`]): even indices are the one, odd indices the other.
 #[derive(Clone, Copy, Debug)]
 pub struct Sampler {
-    pattern: Pattern,
-    target: Target,
+    pub(super) pattern: Pattern,
+    pub(super) target: Target,
     /// Of all samples of the set; used by patterns that have cells.
     cells: Cells,
     /// Of seed, pixel and set.
-    key: Key,
+    pub(super) key: Key,
+    /// Which of the pixel's sets.
+    set: u32,
     /// Which sample of its set.
-    index: u32,
+    pub(super) index: u32,
 }
 
 /// Names a set of dimensions.
 #[derive(Clone, Copy, Debug)]
-struct DimensionSet(u64);
+pub(super) struct DimensionSet(pub u64);
 
 impl DimensionSet {
-    const CAMERA: Self = Self(u64::MAX);
+    pub const CAMERA: Self = Self(u64::MAX);
     const LENS: Self = Self(u64::MAX - 1);
 
     fn light(vertex: u32, light: u32) -> Self {
@@ -62,17 +64,35 @@ impl Sampler {
     /// Sample `index` of `config.samples_per_pixel()` of `pixel`. An index past them goes on
     /// with more points of the same pattern.
     pub fn new(config: &SamplingConfig, pixel: UVec2, index: u32) -> Self {
+        let sets = config.pattern.sets();
+        Self::of_set(config, pixel, index % sets).at(index / sets)
+    }
+
+    /// The first sample of set `set` ([`Pattern::sets`]) of `pixel`.
+    pub fn of_set(config: &SamplingConfig, pixel: UVec2, set: u32) -> Self {
         let pixel = u64::from(pixel.y) << 32 | u64::from(pixel.x);
         let sets = config.pattern.sets();
         Self {
             pattern: config.pattern,
             target: config.target,
             cells: Cells::at_least(config.samples.div_ceil(sets)),
-            key: Key::new(config.seed)
-                .with(pixel)
-                .with(u64::from(index % sets)),
-            index: index / sets,
+            key: Key::new(config.seed).with(pixel).with(u64::from(set)),
+            set,
+            index: 0,
         }
+    }
+
+    /// Sample `number` of its set.
+    pub fn at(&self, number: u32) -> Self {
+        Self {
+            index: number,
+            ..*self
+        }
+    }
+
+    /// Its index among all samples of its pixel.
+    pub fn index(&self) -> u32 {
+        self.index * self.pattern.sets() + self.set
     }
 
     /// Where in its pixel the sample lands, in `[0, 1)²`.
@@ -99,16 +119,29 @@ impl Sampler {
     /// With a `count` of 1 the points of all camera samples of the pixel form the pattern. With
     /// more, each camera sample has its own pattern on the light (all of them together are one for Sobol).
     pub fn light(&self, vertex: u32, light: u32, j: u32, count: u32) -> Vec2 {
+        if self.pattern == Pattern::Sobol {
+            let (set, pair) = Self::sobol_light(vertex, light, count);
+            return self.sobol(set, self.number(j, count), pair);
+        }
         let set = DimensionSet::light(vertex, light);
         if count > 1 {
-            return self.point_of(set, j, count);
+            self.point_of(set, j, count)
+        } else {
+            self.point(set)
         }
-        match (self.pattern, vertex, light) {
-            (Pattern::Sobol, 1, 0) => {
-                self.sobol(DimensionSet::CAMERA, u64::from(self.index), Pair::Second)
-            }
-            _ => self.point(set),
+    }
+
+    /// Which Sobol points [`Self::light`] takes.
+    pub(super) fn sobol_light(vertex: u32, light: u32, count: u32) -> (DimensionSet, Pair) {
+        match (vertex, light, count) {
+            (1, 0, 1) => (DimensionSet::CAMERA, Pair::Second),
+            _ => (DimensionSet::light(vertex, light), Pair::First),
         }
+    }
+
+    /// The number of point `j` of the `count` of this sample: up to 2^64 in one pixel, one sample after another.
+    pub(super) fn number(&self, j: u32, count: u32) -> u64 {
+        u64::from(self.index) * u64::from(count) + u64::from(j)
     }
 
     /// In which direction a path goes on from its vertex number `vertex`, in `[0, 1)²`.
@@ -161,8 +194,7 @@ impl Sampler {
 
     /// Point `j` of the `count` that this sample has in `set`.
     fn point_of(&self, set: DimensionSet, j: u32, count: u32) -> Vec2 {
-        // Up to 2^64 in one pixel: the numbers of all its samples' points one after another.
-        let number = u64::from(self.index) * u64::from(count) + u64::from(j);
+        let number = self.number(j, count);
         let key = || self.key.with(set.0).with(u64::from(self.index));
         match self.pattern {
             Pattern::Grid => Cells::at_least(count).point(key(), j, false),
@@ -176,9 +208,7 @@ impl Sampler {
         self.key.with(set.0).with(number).point()
     }
 
-    /// Point `number` of a Sobol sequence; past 2^32 the next independent one begins.
     fn sobol(&self, set: DimensionSet, number: u64, pair: Pair) -> Vec2 {
-        let key = self.key.with(set.0).with(number >> 32);
-        sobol::point(number as u32, pair, key)
+        sobol::point_of(self.key.with(set.0), number, pair)
     }
 }

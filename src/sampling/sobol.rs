@@ -18,6 +18,7 @@ pub(super) enum Pair {
 ///
 /// Both pairs of one key belong to one four-dimensional sequence. Any prefix of it is a prefix of
 /// a scrambled Sobol sequence, and each single point is uniform.
+#[inline(always)]
 pub(super) fn point(index: u32, pair: Pair, key: Key) -> Vec2 {
     let shuffle = key.bits() as u32;
     let scramble = key.with(pair as u64).bits();
@@ -28,9 +29,16 @@ pub(super) fn point(index: u32, pair: Pair, key: Key) -> Vec2 {
     Vec2::new(unit_interval(x), unit_interval(y))
 }
 
+/// Point `number` of the sequences of `key`; past 2^32 the next independent one begins.
+#[inline(always)]
+pub(super) fn point_of(key: Key, number: u64, pair: Pair) -> Vec2 {
+    point(number as u32, pair, key.with(number >> 32))
+}
+
 /// A random permutation of numbers whose bits are in reverse order, in which each bit is turned
 /// over by a hash of those below it: Owen's scrambling (Laine and Karras 2011, "Stratified
 /// Sampling for Stochastic Transparency", with the factors of Vegdahl 2021, "Building a Better LK Hash").
+#[inline(always)]
 fn scramble_reversed(mut bits: u32, seed: u32) -> u32 {
     bits ^= bits.wrapping_mul(0x3d20_adea);
     bits = bits.wrapping_add(seed);
@@ -40,6 +48,7 @@ fn scramble_reversed(mut bits: u32, seed: u32) -> u32 {
 }
 
 /// The first 24 bits behind the point of a number whose bits are in reverse order.
+#[inline(always)]
 fn unit_interval(reversed: u32) -> f32 {
     (reversed.reverse_bits() >> 8) as f32 * (1.0 / (1 << 24) as f32)
 }
@@ -47,16 +56,24 @@ fn unit_interval(reversed: u32) -> f32 {
 /// Point `index` of the Sobol sequence (Joe and Kuo 2008, "Constructing Sobol Sequences with
 /// Better Two-Dimensional Projections"): x in the lower half of the result and y in the upper,
 /// each with the bits behind its point in reverse order.
+#[inline(always)]
 fn unscrambled(index: u32, pair: Pair) -> u64 {
     match pair {
         Pair::First => u64::from(pascal(index)) << 32 | u64::from(index),
-        Pair::Second => (0..8).fold(0, |sum, k| sum ^ TABLE[k][(index >> (4 * k)) as usize & 15]),
+        Pair::Second => {
+            let mut sum = 0;
+            for k in 0..8 {
+                sum ^= TABLE[k][(index >> (4 * k)) as usize & 15];
+            }
+            sum
+        }
     }
 }
 
 /// The second dimension, whose direction numbers are the rows of Pascal's triangle modulo 2: the
 /// bits of `index` as a polynomial p(x) become those of p(x + 1). From halves on down,
 /// x^k h + l becomes (x^k + 1) h + l, for (x + 1)^k is x^k + 1 for each power of two k.
+#[inline(always)]
 fn pascal(mut index: u32) -> u32 {
     index ^= index >> 16;
     index ^= (index & 0xff00_ff00) >> 8;

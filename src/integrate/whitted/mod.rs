@@ -11,7 +11,7 @@ use crate::color::Rgb;
 use crate::interaction::{Interaction, LitSide};
 use crate::light::{Light, LightSample, ShadowEnd};
 use crate::material::{Bsdf, View, reflect, refract};
-use crate::math::{ROW, Ray, Vec3};
+use crate::math::{Ray, Vec3};
 use crate::prepare::{PreparedScene, Surface};
 use crate::sampling::Sampler;
 use crate::scene::Settings;
@@ -439,15 +439,16 @@ impl Integrator for Whitted<'_> {
         let mut hits = vec![None; rays.len()];
         self.scene.closest_hits(&rays, &mut hits);
         let mut work = Work {
-            lit: vec![Rgb::BLACK; samples.len()],
+            shadow_rays: Vec::with_capacity(rays.len()),
+            shadows: Vec::with_capacity(rays.len()),
+            lit: vec![Rgb::BLACK; rays.len()],
             ..Work::default()
         };
         let mut plain = Plain::NONE;
         let start = radiances.len();
         for (place, (CameraSample { ray, sampler }, hit)) in samples.iter().zip(hits).enumerate() {
-            if place % ROW == 0 {
+            if plain.is_full() {
                 self.light_plain(&mut plain, samples, &mut work, log);
-                plain = Plain::NONE;
             }
             work.sample = place;
             log.turn_to(place);

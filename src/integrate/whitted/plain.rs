@@ -27,6 +27,11 @@ impl Plain {
         surfaces: PlainRow::EMPTY,
         places: [0; ROW],
     };
+
+    /// Whether there is no room for another one.
+    pub fn is_full(&self) -> bool {
+        self.surfaces.count() == ROW
+    }
 }
 
 /// Shadow rays of a row of points to one light.
@@ -120,7 +125,7 @@ impl Whitted<'_> {
         Some(ambient)
     }
 
-    /// Sends the shadow rays from all of `plain` to all lights.
+    /// Sends the shadow rays from all of `plain` to all lights, and empties it.
     pub(super) fn light_plain(
         &self,
         plain: &mut Plain,
@@ -135,6 +140,7 @@ impl Whitted<'_> {
         }
         surfaces.locate(self.smooths_shadows);
         let mut row = LightRow {
+            u: [Vec2::ZERO; ROW],
             samples: LightSampleRow::NONE,
             ways: WayRow::NONE,
         };
@@ -142,8 +148,9 @@ impl Whitted<'_> {
             let light = &self.scene.lights[number as usize];
             let count = self.samples[number as usize];
             for j in 0..count {
-                let u = |sampler: &Sampler| sampler.light(1, number, j, count);
-                row.sample(light, surfaces, |i| u(&samples[places[i]].sampler));
+                let samplers = places.iter().map(|&place| &samples[place].sampler);
+                Sampler::light_row(samplers, [1, number, j, count], &mut row.u);
+                row.sample(light, surfaces);
                 for (i, &place) in places.iter().enumerate() {
                     if let Some((ray, value)) = self.direct_plain(surfaces, &row, i) {
                         let value = value / count as f32;
@@ -153,6 +160,7 @@ impl Whitted<'_> {
                 self.light_up_if_full(work, log);
             }
         }
+        surfaces.clear();
     }
 
     /// What the sample of a light adds to sample `i` where nothing is in the way of a ray.
@@ -173,19 +181,16 @@ impl Whitted<'_> {
 
 /// Samples of one light, and the shadow rays to them.
 struct LightRow {
+    u: [Vec2; ROW],
     samples: LightSampleRow,
     ways: WayRow,
 }
 
 impl LightRow {
-    fn sample(&mut self, light: &Light, surfaces: &PlainRow, u: impl Fn(usize) -> Vec2) {
-        let Self { samples, ways } = self;
+    fn sample(&mut self, light: &Light, surfaces: &PlainRow) {
+        let Self { u, samples, ways } = self;
         let count = surfaces.count();
-        let mut us = [Vec2::ZERO; ROW];
-        for (i, point) in us[..count].iter_mut().enumerate() {
-            *point = u(i);
-        }
-        light.sample_row(surfaces.points(), &us, count, samples);
+        light.sample_row(surfaces.points(), u, count, samples);
         if count < FEW {
             (0..count).for_each(|i| ways.find(i, surfaces, samples));
         } else {
