@@ -7,12 +7,16 @@ use std::sync::atomic::AtomicBool;
 
 use common::build::*;
 use halfshade::bvh::Builder;
+use halfshade::color::Rgb;
 use halfshade::film::{Rect, StoppedBy};
+use halfshade::light::{DistantLight, Light};
+use halfshade::math::{UnitVec3, Vec3};
 use halfshade::prepare::prepare;
 use halfshade::render::{Event, Job, render, replay};
 use halfshade::sampling::{Pattern, SamplingConfig};
 use halfshade::scene::Settings;
 use halfshade::stress::still_life::{camera, scene, settings};
+use halfshade::texture::{TexturedRgb, TexturedScalar};
 
 const PATTERNS: [Pattern; 4] = [
     Pattern::Grid,
@@ -63,6 +67,40 @@ fn a_crop_is_a_part_of_the_whole() {
     for (pixel, value) in crop.pixels().zip(part.means()) {
         let i = pixel.y * settings.size.x + pixel.x;
         assert_eq!(value, whole.means()[i as usize], "{pixel}");
+    }
+}
+
+/// Plain surfaces are lit in rows of samples; those with vertex colours, however white, one by one.
+#[test]
+fn surfaces_that_are_lit_in_rows_have_the_bits_of_those_that_are_not() {
+    let mut plain = scene(1.0);
+    let glossy = phong(|p| {
+        p.diffuse = TexturedRgb::constant(Rgb::splat(0.3));
+        p.specular = TexturedRgb::constant(Rgb::splat(0.5));
+        p.exponent = TexturedScalar::constant(20.0);
+    });
+    add_sphere(&mut plain, Vec3::new(-0.4, 0.4, 1.8), 0.4, 12, glossy);
+    let sun = DistantLight {
+        direction: UnitVec3::normalize(Vec3::new(0.3, -1.0, -0.4)).unwrap(),
+        irradiance: Rgb::WHITE,
+        angle_radians: 0.02,
+        samples: 1,
+    };
+    add_light(&mut plain, Light::Distant(sun));
+    let mut colored = plain.clone();
+    for mesh in &mut colored.meshes {
+        let white = vec![[1.0; 4]; mesh.positions().len()];
+        *mesh = mesh.clone().with_colors(white).unwrap();
+    }
+    for (pattern, shadow_terminator) in PATTERNS.into_iter().zip([true, false, false, true]) {
+        let settings = Settings {
+            shadow_terminator,
+            ..settings(pattern)
+        };
+        let [plain, colored] =
+            [&plain, &colored].map(|scene| picture(scene, &camera(1.0), &settings));
+        assert_eq!(bits(&plain), bits(&colored), "{pattern:?}");
+        assert_eq!(plain.rays, colored.rays, "{pattern:?}");
     }
 }
 

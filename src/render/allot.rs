@@ -43,9 +43,26 @@ struct Share {
     taken: u32,
 }
 
-impl Share {
-    fn score(self) -> f64 {
-        (f64::from(self.score) / STEPS_PER_OCTAVE).exp2()
+/// The powers of two that scores stand for.
+struct Scores {
+    least: i16,
+    powers: Vec<f64>,
+}
+
+impl Scores {
+    /// For all scores of `classes`, which are in their order.
+    fn of(classes: &Classes) -> Self {
+        let score = |end: Option<&(Share, Class)>| end.map_or(0, |(share, _)| share.score);
+        let (least, most) = (score(classes.first()), score(classes.last()));
+        let power = |score: i16| (f64::from(score) / STEPS_PER_OCTAVE).exp2();
+        Self {
+            least,
+            powers: (least..=most).map(power).collect(),
+        }
+    }
+
+    fn of_share(&self, share: Share) -> f64 {
+        self.powers[usize::from(share.score.abs_diff(self.least))]
     }
 }
 
@@ -79,6 +96,7 @@ pub(super) struct Allotment {
     /// Of each tile, two for a pixel.
     shares: Vec<Vec<Share>>,
     classes: Classes,
+    scores: Scores,
 }
 
 /// What comes of a number of samples.
@@ -123,12 +141,14 @@ impl Allotment {
         for (share, class) in by_tile.iter().flatten() {
             classes.entry(*share).or_default().add(class);
         }
+        let classes = classes.into_iter().collect();
         Self {
             pattern,
             unit,
             pixels: film.area(),
             shares,
-            classes: classes.into_iter().collect(),
+            scores: Scores::of(&classes),
+            classes,
         }
     }
 
@@ -178,7 +198,7 @@ impl Allotment {
     }
 
     fn count(&self, share: Share, scale: f64, least: u32) -> u32 {
-        self.rounded(scale * share.score())
+        self.rounded(scale * self.scores.of_share(share))
             .max(least)
             .max(share.taken)
     }
@@ -206,7 +226,7 @@ impl Allotment {
             let count = self.count(share, scale, least);
             sum.samples += class.count * u64::from(count);
             sum.rays += class.cost * f64::from(count);
-            sum.error += class.weight * f64::from(count).powf(-exponent);
+            sum.error += class.weight * fall(count, exponent);
         }
         sum
     }
@@ -412,5 +432,10 @@ impl<'a> Measured<'a> {
 
 /// What a half with `taken` samples adds to the squared error of its pixel.
 fn part(difficulty: f32, taken: u32, exponent: f64) -> f64 {
-    0.25 * f64::from(difficulty) * f64::from(taken.max(1)).powf(-exponent)
+    0.25 * f64::from(difficulty) * fall(taken.max(1), exponent)
+}
+
+/// n^-`exponent` for multiples of a half: quicker than any power.
+fn fall(n: u32, exponent: f64) -> f64 {
+    f64::from(n).sqrt().powi(-(2.0 * exponent) as i32)
 }
