@@ -33,6 +33,7 @@ impl DiskLight {
         Some(LightSample {
             wi: unit(sample.direction),
             weight: weigh(self.radiance, sample.inverse_density)?,
+            density: 1.0 / sample.inverse_density,
             shadow: ShadowEnd::Point(shadow_point(point + sample.on_disk)),
         })
     }

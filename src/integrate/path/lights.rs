@@ -180,7 +180,7 @@ impl<'a> Lights<'a> {
             return Some(Incident {
                 wi: sample.wi,
                 weight: sample.weight,
-                density: light.density(point, sample.wi),
+                density: sample.density,
                 shadow: sample.shadow,
             });
         }
