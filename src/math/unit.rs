@@ -37,6 +37,10 @@ impl UnitVec3 {
         if !(largest > 0.0 && largest.is_finite()) {
             return None;
         }
+        // Squares of most numbers do not leave double precision.
+        if (1e-150..1e150).contains(&largest) {
+            return Some(Self((v * v.length_recip()).as_vec3()));
+        }
         Self::normalize((v / largest).as_vec3())
     }
 

@@ -49,6 +49,14 @@ impl Surface<'_> {
         self.bsdf.pdf(&self.view(), wi)
     }
 
+    /// [`Surface::eval`] and [`Surface::pdf`].
+    pub fn eval_and_pdf(&self, wi: UnitVec3) -> (Rgb, f32) {
+        if self.is_torn(*wi) {
+            return (Rgb::BLACK, 0.0);
+        }
+        self.bsdf.value_and_pdf(&self.view(), wi)
+    }
+
     /// Draws a direction for two independent numbers `u_lobe` in `[0, 1)` and `u` in its square;
     /// `None` where nothing comes from the one that was drawn.
     pub fn sample(&self, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {

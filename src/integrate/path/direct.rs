@@ -43,7 +43,9 @@ impl PathTracer<'_> {
             }
             return total;
         }
-        let chosen = self.lights.choose(place, sampler.light_choice(walk.vertex));
+        let chosen = self
+            .lights
+            .choose(place, || sampler.light_choice(walk.vertex));
         let Some((light, probability)) = chosen else {
             return Rgb::BLACK;
         };
@@ -78,15 +80,15 @@ impl PathTracer<'_> {
         {
             return Rgb::BLACK;
         }
-        let scattered = surface.eval(wi) * cos.abs();
+        let (value, found) = surface.eval_and_pdf(wi);
+        let scattered = value * cos.abs();
         if scattered.is_black() {
             return Rgb::BLACK;
         }
         // What has no surface is not found by scattering.
-        let met = if incident.density == 0.0 {
-            0.0
-        } else {
-            f64::from(surface.pdf(wi))
+        let met = match incident.density > 0.0 {
+            true => f64::from(found),
+            false => 0.0,
         };
         let weight = (self.weighing).weight(true, expected * incident.density, met);
         let unshadowed = incident.weight * scattered * (weight / expected as f32);

@@ -77,8 +77,8 @@ impl<'a> PathTracer<'a> {
     /// Sends the walk on from `surface`; `false` where it ends.
     fn scatter(&self, surface: &Surface, walk: &mut Walk, place: Place, sampler: &Sampler) -> bool {
         let at = &surface.interaction;
-        let [lobe, survival] = sampler.lobe_and_survival(walk.vertex);
-        let Some(sample) = surface.sample(lobe, sampler.direction(walk.vertex)) else {
+        let [direction, chance] = sampler.scattering(walk.vertex);
+        let Some(sample) = surface.sample(chance.x, direction) else {
             return false;
         };
         walk.vertex += 1;
@@ -97,7 +97,7 @@ impl<'a> PathTracer<'a> {
         }
         walk.scattered += 1;
         let may_end_at_a_light = self.can_meet_light || walk.scattered < self.max_depth;
-        if !may_end_at_a_light || !survives(walk, survival) {
+        if !may_end_at_a_light || !survives(walk, chance.y) {
             return false;
         }
         walk.kind = kind_of(&sample);
