@@ -8,6 +8,7 @@ use crate::color::Rgb;
 use crate::integrate::visibility::transmittance;
 use crate::integrate::{RayKind, RayLog, RayRecord};
 use crate::light::ShadowEnd;
+use crate::math::Vec3;
 use crate::prepare::Surface;
 use crate::sampling::Sampler;
 
@@ -58,6 +59,11 @@ impl PathTracer<'_> {
     }
 
     /// What one sample of a light adds, of which `expected` are taken.
+    ///
+    /// Shadow rays start on the smooth surface that vertex normals describe, paths go on from the triangle. Light below the
+    /// horizon of the triangle, which scattering never finds, is looked at alone, with its full weight.
+    /// Above it both ways count, and start apart by the height of the bulge: what stands so near that the one start sees
+    /// past it and the other does not is counted by the share of either.
     fn gathered(
         &self,
         surface: &Surface,
@@ -67,20 +73,27 @@ impl PathTracer<'_> {
         expected: f64,
         log: &mut RayLog,
     ) -> Rgb {
-        let at = &surface.interaction;
+        let mut at = surface.interaction;
+        if !self.smooths_shadows {
+            at.smooth_point = None;
+        }
         let wi = incident.wi;
         let cos = at.shading_normal.dot(*wi);
-        let side = at.geometric_normal.dot(*wi);
-        if cos * side <= 0.0 {
-            return Rgb::BLACK;
-        }
+        // Both normals must agree where light is, unless it passes over a bulge.
+        let is_behind = cos <= 0.0;
+        let is_hidden = |direction: Vec3| match is_behind {
+            true => at.geometric_normal.dot(direction) >= 0.0,
+            false => !at.can_see(direction),
+        };
         // The end of the shadow ray may be on the other side than the centre of the light.
-        if let ShadowEnd::Point(end) = incident.shadow
-            && at.geometric_normal.dot(end - at.point) * side <= 0.0
-        {
+        let is_end_hidden = match incident.shadow {
+            ShadowEnd::Point(end) => is_hidden(end - at.point),
+            ShadowEnd::Direction(_) => false,
+        };
+        if is_hidden(*wi) || is_end_hidden {
             return Rgb::BLACK;
         }
-        let (value, found) = surface.eval_and_pdf(wi);
+        let (value, found) = surface.eval_and_pdf(wi, at.smooth_point.is_some());
         let scattered = value * cos.abs();
         if scattered.is_black() {
             return Rgb::BLACK;
@@ -92,18 +105,19 @@ impl PathTracer<'_> {
         };
         let weight = (self.weighing).weight(true, expected * incident.density, met);
         let unshadowed = incident.weight * scattered * (weight / expected as f32);
-        let ray = match incident.shadow {
-            ShadowEnd::Point(target) => at.spawn_ray_to(target),
-            ShadowEnd::Direction(direction) => at.spawn_ray(*direction),
+        let ray = match (incident.shadow, is_behind) {
+            (ShadowEnd::Point(target), false) => at.shadow_ray_to(target),
+            (ShadowEnd::Point(target), true) => at.spawn_ray_to(target),
+            (ShadowEnd::Direction(direction), false) => at.shadow_ray(*direction),
+            (ShadowEnd::Direction(direction), true) => at.spawn_ray(*direction),
         };
         let way = match incident.shadow {
             ShadowEnd::Point(target) => target.distance(at.point),
             ShadowEnd::Direction(_) => f32::INFINITY,
         };
-        let around = if side > 0.0 {
-            walk.absorption
-        } else {
-            beyond(surface)
+        let around = match is_behind {
+            true => beyond(surface),
+            false => walk.absorption,
         };
         let absorbed = around.map_or(Rgb::WHITE, |absorption| {
             through(absorption, self.scene.world_distance(way))

@@ -34,6 +34,8 @@ pub struct PathTracer<'a> {
     scene: &'a PreparedScene<'a>,
     lights: Lights<'a>,
     max_depth: u32,
+    /// Whether shadow rays start on the surface that vertex normals describe.
+    smooths_shadows: bool,
     clamp: f32,
     /// Per light of the scene: samples at a surface that the camera sees.
     samples: Vec<u32>,
@@ -57,6 +59,7 @@ impl<'a> PathTracer<'a> {
         Self {
             scene,
             max_depth: settings.max_depth,
+            smooths_shadows: settings.shadow_terminator,
             clamp: settings.clamp.unwrap_or(f32::INFINITY),
             samples: (scene.lights.iter())
                 .map(|light| light_samples(light, settings.light_samples, pattern))
