@@ -169,7 +169,7 @@ pub fn render_within(
         cancel,
         observe,
         pace: Pace::start(),
-        decay: Decay::of(job.settings.sampling.pattern),
+        decay: Decay::of(job.settings.sampling.pattern, job.settings.integrator),
         tiles: tiles(job),
         done: AtomicU64::new(0),
         total: AtomicU64::new(job.crop.area() * u64::from(limits.samples)),
@@ -224,15 +224,6 @@ impl Run<'_> {
                 return StoppedBy::Samples;
             };
             foreseen = sums.map(|sums| (step.outcome.error / course.now().error, sums));
-            eprintln!(
-                "PASS t {:.2} error {:?} p {:.3} n {} -> {} fall {:.3}",
-                self.pace.seconds(),
-                error,
-                self.decay.exponent(),
-                course.now().samples,
-                step.outcome.samples,
-                step.outcome.error / course.now().error
-            );
             course.aim(&mut self.tiles, &step);
             if let Some(end) = self.pass(self.limits.deadline) {
                 return end;
