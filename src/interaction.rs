@@ -118,8 +118,16 @@ fn away(p: f32, offset: f32) -> f32 {
     let sum = p + offset;
     let (bits, is_up) = (sum.to_bits(), offset > 0.0);
     // `next_up` and `next_down` without a branch.
-    let next = if (sum > 0.0) == is_up { bits + 1 } else { bits.wrapping_sub(1) };
-    let next = if sum == 0.0 { 1 | (u32::from(!is_up) << 31) } else { next };
+    let next = if (sum > 0.0) == is_up {
+        bits + 1
+    } else {
+        bits.wrapping_sub(1)
+    };
+    let next = if sum == 0.0 {
+        1 | (u32::from(!is_up) << 31)
+    } else {
+        next
+    };
     if (offset != 0.0) & (sum.abs() < f32::INFINITY) {
         f32::from_bits(next)
     } else {
@@ -169,9 +177,21 @@ mod tests {
         for p in all.into_iter().flat_map(|p| [p, -p]) {
             for offset in all.into_iter().flat_map(|o| [o, -o]) {
                 let sum = p + offset;
-                let next = if offset > 0.0 { sum.next_up() } else { sum.next_down() };
-                let expected = if offset == 0.0 || sum.is_infinite() { sum } else { next };
-                assert_eq!(away(p, offset).to_bits(), expected.to_bits(), "{p} + {offset}");
+                let next = if offset > 0.0 {
+                    sum.next_up()
+                } else {
+                    sum.next_down()
+                };
+                let expected = if offset == 0.0 || sum.is_infinite() {
+                    sum
+                } else {
+                    next
+                };
+                assert_eq!(
+                    away(p, offset).to_bits(),
+                    expected.to_bits(),
+                    "{p} + {offset}"
+                );
             }
         }
     }

@@ -67,7 +67,14 @@ fn the_page_holds_the_sweeps() {
 
 #[test]
 fn a_scene_is_held_against_itself() {
-    let output = stress(&["scenes/glass.toml", "--size", "40x30", "--json"]);
+    // By whitted and by path.
+    for scene in ["scenes/glass.toml", "scenes/cornell.toml"] {
+        assert_holds(scene);
+    }
+}
+
+fn assert_holds(scene: &str) {
+    let output = stress(&[scene, "--size", "40x30", "--json"]);
     let reports = json(&output);
     let of = |id: &str| {
         reports

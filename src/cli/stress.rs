@@ -6,7 +6,7 @@ use clap::Args;
 use halfshade::import::{SceneOptions, import};
 use halfshade::math::UVec2;
 use halfshade::output::write_whole;
-use halfshade::stress::invariance::examine;
+use halfshade::stress::invariance::{examine, technique};
 use halfshade::stress::{Case, Check, Effort, Report, Status, cases, page};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
@@ -125,8 +125,9 @@ fn run_scene(path: &Path, options: &StressOptions) -> Result<Vec<Report>, Failur
     let mut settings = imported.settings.clone();
     settings.sampling.samples = options.samples;
     let command = format!(
-        "halfshade render {} --integrator whitted --size {x}x{y} --samples {}",
+        "halfshade render {} --integrator {} --size {x}x{y} --samples {}",
         path.display(),
+        technique(settings.integrator).name(),
         options.samples
     );
     Ok(examine(&imported.scene, camera, &settings, &command))

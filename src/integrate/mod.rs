@@ -6,6 +6,7 @@ mod log;
 mod path;
 mod views;
 mod visibility;
+mod way;
 mod whitted;
 
 pub use account::{Account, LightGroups, LightPart, Seen, Sight, Source};

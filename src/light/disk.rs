@@ -56,6 +56,7 @@ impl DiskLight {
         weight.map(|weight| LightSample {
             wi: unit(sample.direction),
             weight,
+            density: 1.0 / sample.inverse_density,
             shadow: ShadowEnd::Point(shadow_point(point + sample.on_disk)),
         })
     }

@@ -28,6 +28,7 @@ impl DistantLight {
             return Some(LightSample {
                 wi: center,
                 weight: weigh(self.irradiance, 1.0)?,
+                density: 0.0,
                 shadow: ShadowEnd::Direction(center),
             });
         }
@@ -38,6 +39,7 @@ impl DistantLight {
         Some(LightSample {
             wi,
             weight: weigh(self.irradiance, weight)?,
+            density: 1.0 / (TAU * one_minus_cos),
             shadow: ShadowEnd::Direction(wi),
         })
     }

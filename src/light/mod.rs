@@ -57,6 +57,8 @@ pub struct LightSample {
     /// Radiance over solid-angle density (for lights without area: irradiance on a surface that
     /// faces the light): multiply by BSDF and cosine once the way is clear.
     pub weight: Rgb,
+    /// That density, as [`Light::density`] says it.
+    pub density: f64,
     /// What the shadow ray goes to.
     pub shadow: ShadowEnd,
 }
@@ -279,7 +281,7 @@ fn shadow_point(point: DVec3) -> Vec3 {
 }
 
 /// Where `ray` meets, from the front, the plane through `center` (relative to the ray's origin)
-/// across `normal`, whatever its length: the ray's parameter there, and the place relative to `center`.
+/// across `normal`, of any length: the ray's parameter there, and the place relative to `center`.
 fn plane_hit(ray: &Ray, center: DVec3, normal: DVec3) -> Option<(f32, DVec3)> {
     let direction = ray.direction.as_dvec3();
     let approach = direction.dot(normal);

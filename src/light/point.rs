@@ -29,6 +29,7 @@ impl PointLight {
         Some(LightSample {
             wi,
             weight: weigh(self.intensity, self.falloff.attenuation(toward.distance))?,
+            density: 0.0,
             shadow: shadow_end(self.position, self.radius, wi, u),
         })
     }

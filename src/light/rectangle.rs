@@ -26,7 +26,7 @@ pub struct RectangleLight {
 struct Edges {
     half_u: DVec3,
     half_v: DVec3,
-    /// `half_u × half_v`: a quarter of the area long.
+    /// `half_u × half_v`.
     cross: DVec3,
 }
 
@@ -37,8 +37,8 @@ impl RectangleLight {
         let edges = self.edges()?;
         let point = point.as_dvec3();
         let center = self.center.as_dvec3() - point;
-        let normal = edges.cross.normalize();
-        let height = -center.dot(normal);
+        let quarter_area = edges.cross.length();
+        let height = -center.dot(edges.cross) / quarter_area;
         if !(height > 0.0 && height.is_finite()) {
             return None;
         }
@@ -51,11 +51,12 @@ impl RectangleLight {
         let distance = to_light.length();
         let inverse_density = match &seen {
             Some(seen) => seen.solid_angle(),
-            None => 4.0 * edges.cross.length() * (height / distance) / distance / distance,
+            None => 4.0 * quarter_area * (height / distance) / distance / distance,
         };
         Some(LightSample {
             wi: unit(to_light / distance),
             weight: weigh(self.radiance, inverse_density)?,
+            density: 1.0 / inverse_density,
             shadow: ShadowEnd::Point(shadow_point(point + to_light)),
         })
     }
@@ -66,8 +67,8 @@ impl RectangleLight {
             return 0.0;
         };
         let center = self.center.as_dvec3() - point.as_dvec3();
-        let normal = edges.cross.normalize();
-        let height = -center.dot(normal);
+        let quarter_area = edges.cross.length();
+        let height = -center.dot(edges.cross) / quarter_area;
         if !(height > 0.0 && height.is_finite()) {
             return 0.0;
         }
@@ -75,8 +76,8 @@ impl RectangleLight {
             Some(seen) => 1.0 / seen.solid_angle(),
             None => {
                 // Distance² / (area cos): the distance is the height over the cosine.
-                let cos = -wi.as_dvec3().normalize().dot(normal);
-                height * height / (4.0 * edges.cross.length() * cos * cos * cos)
+                let cos = -wi.as_dvec3().normalize().dot(edges.cross) / quarter_area;
+                height * height / (4.0 * quarter_area * cos * cos * cos)
             }
         }
     }
@@ -118,12 +119,11 @@ impl RectangleLight {
     pub fn met(&self, ray: &Ray) -> Option<(f32, Rgb)> {
         let edges = self.edges()?;
         let center = self.center.as_dvec3() - ray.origin.as_dvec3();
-        let normal = edges.cross.normalize();
-        let (t, from_center) = plane_hit(ray, center, normal)?;
+        let (t, from_center) = plane_hit(ray, center, edges.cross)?;
         // from_center = u half_u + v half_v, by Cramer's rule.
-        let quarter_area = edges.cross.length();
-        let u = from_center.cross(edges.half_v).dot(normal) / quarter_area;
-        let v = edges.half_u.cross(from_center).dot(normal) / quarter_area;
+        let square = edges.cross.length_squared();
+        let u = from_center.cross(edges.half_v).dot(edges.cross) / square;
+        let v = edges.half_u.cross(from_center).dot(edges.cross) / square;
         (u.abs() <= 1.0 && v.abs() <= 1.0).then_some((t, self.radiance))
     }
 }

@@ -11,6 +11,8 @@ pub struct LightSampleRow {
     wi: VectorRow,
     /// See [`LightSample::weight`], by channel.
     weight: VectorRow,
+    /// See [`LightSample::density`].
+    density: [f64; ROW],
     /// Where the shadow rays go: points, or directions.
     end: VectorRow,
     has_direction: bool,
@@ -23,6 +25,7 @@ impl LightSampleRow {
     pub const NONE: Self = Self {
         wi: VectorRow::ZERO,
         weight: VectorRow::ZERO,
+        density: [0.0; ROW],
         end: VectorRow::ZERO,
         has_direction: false,
         is_some: [false; ROW],
@@ -42,6 +45,7 @@ impl LightSampleRow {
         LightSample {
             wi: UnitVec3::from_normalized(self.wi.get(i)),
             weight: Rgb::new(r, g, b),
+            density: self.density[i],
             shadow: if self.has_direction {
                 ShadowEnd::Direction(UnitVec3::from_normalized(end))
             } else {
@@ -57,10 +61,12 @@ impl LightSampleRow {
         let sample = sample.unwrap_or(LightSample {
             wi: UnitVec3::Z,
             weight: Rgb::BLACK,
+            density: 0.0,
             shadow: ShadowEnd::Point(Vec3::Z),
         });
         self.wi.set(i, *sample.wi);
         self.weight.set(i, Vec3::from(sample.weight.channels()));
+        self.density[i] = sample.density;
         let end = match sample.shadow {
             ShadowEnd::Point(end) => end,
             ShadowEnd::Direction(direction) => *direction,

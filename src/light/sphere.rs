@@ -48,6 +48,7 @@ impl SphereLight {
         Some(LightSample {
             wi: unit(direction),
             weight: weigh(self.radiance, TAU * one_minus_cos)?,
+            density: 1.0 / (TAU * one_minus_cos),
             shadow: ShadowEnd::Point(shadow_point(point.as_dvec3() + direction * along)),
         })
     }

@@ -35,6 +35,7 @@ impl SpotLight {
         Some(LightSample {
             wi,
             weight: weigh(self.intensity, attenuation)?,
+            density: 0.0,
             shadow: shadow_end(self.position, self.radius, wi, u),
         })
     }

@@ -241,7 +241,7 @@ impl Bsdf {
 }
 
 impl Lobes {
-    fn value(&self, pair: &Pair, has_mirrors: bool) -> Rgb {
+    pub(super) fn value(&self, pair: &Pair, has_mirrors: bool) -> Rgb {
         match self {
             Self::Layered(layers) => layers.value(pair, has_mirrors),
             Self::Phong { .. } if pair.wi.z <= 0.0 || pair.wo.z <= 0.0 => Rgb::BLACK,

@@ -55,7 +55,13 @@ impl Phong {
             || self.specular.texture.is_some()
             || self.exponent.texture.is_some();
         let is_plain = !has_textures && self.reflect.is_black() && self.transmit.is_black();
-        let bsdf = || self.of(self.diffuse.factor, self.specular.factor, self.exponent.factor);
+        let bsdf = || {
+            self.of(
+                self.diffuse.factor,
+                self.specular.factor,
+                self.exponent.factor,
+            )
+        };
         is_plain.then(bsdf)
     }
 

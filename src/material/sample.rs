@@ -4,7 +4,7 @@ use std::f32::consts::PI;
 
 use super::bsdf::{Bsdf, Lobes, Specular, View};
 use super::fresnel::{reflect, refract};
-use super::layered::Drawn;
+use super::layered::{Drawn, Pair};
 use super::phong::{around_mirror, phong_pdf};
 use crate::color::Rgb;
 use crate::math::{UnitVec3, Vec2, Vec3};
@@ -38,9 +38,18 @@ struct Shares {
 impl Bsdf {
     /// Density per solid angle with which [`Bsdf::sample`] chooses `wi` by a lobe that has area.
     pub fn pdf(&self, view: &View, wi: UnitVec3) -> f32 {
+        self.pair_pdf(&view.pair(wi))
+    }
+
+    /// [`Bsdf::value`] and [`Bsdf::pdf`].
+    pub fn value_and_pdf(&self, view: &View, wi: UnitVec3) -> (Rgb, f32) {
         let pair = view.pair(wi);
+        (self.lobes.value(&pair, false), self.pair_pdf(&pair))
+    }
+
+    fn pair_pdf(&self, pair: &Pair) -> f32 {
         match &self.lobes {
-            Lobes::Layered(layers) => layers.pdf(&pair),
+            Lobes::Layered(layers) => layers.pdf(pair),
             Lobes::Phong { .. } if pair.wi.z <= 0.0 => 0.0,
             Lobes::Phong { exponent, .. } => {
                 let Some(shares) = self.phong_shares(pair.wo) else {
@@ -81,8 +90,8 @@ impl Bsdf {
     fn of_area(&self, view: &View, wi: Vec3) -> Option<BsdfSample> {
         let cos_i = wi.z;
         let wi = UnitVec3::normalize(view.frame.to_world(wi))?;
-        let pdf = self.pdf(view, wi);
-        let weight = self.value(view, wi) * (cos_i.abs() / pdf);
+        let (value, pdf) = self.value_and_pdf(view, wi);
+        let weight = value * (cos_i.abs() / pdf);
         let is_sound = pdf > 0.0 && pdf.is_finite() && weight.is_finite();
         is_sound.then_some(BsdfSample {
             wi,

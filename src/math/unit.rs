@@ -36,9 +36,12 @@ impl UnitVec3 {
     #[inline(always)]
     pub fn normalize_f64(v: DVec3) -> Option<Self> {
         let largest = larger(larger(v.x.abs(), v.y.abs()), v.z.abs());
-        let has_direction = largest > 0.0 && largest < f64::INFINITY;
-        let unit = Self::normalize((v / largest).as_vec3());
-        unit.filter(|_| has_direction)
+        let has_direction = largest > 0.0 && largest < f64::INFINITY && !v.is_nan();
+        // Squares of most numbers do not leave double precision, and those of all when scaled so.
+        let scale = if largest > 1e150 { 1e-200 } else { 1.0 };
+        let scaled = v * if largest < 1e-150 { 1e200 } else { scale };
+        let unit = Self((scaled * scaled.length_recip()).as_vec3());
+        has_direction.then_some(unit)
     }
 
     /// Takes `v` as it is. Its length must be 1 within 1e-4 (checked in debug builds).

@@ -134,7 +134,11 @@ impl PlainRow {
             let normal = smooth_normal(&facet, &normals, weights);
             let bulge = bulge(&facet, &corners, &normals, weights);
             smooth = if self.has_normals[i] { normal } else { smooth };
-            height = if self.has_normals[i] & is_bulging { bulge } else { height };
+            height = if self.has_normals[i] & is_bulging {
+                bulge
+            } else {
+                height
+            };
         }
         let at = facet.interaction(smooth, height, wo).lit_side();
         let seen = &mut self.seen;

@@ -50,6 +50,19 @@ impl Surface<'_> {
         self.bsdf.pdf(&self.view(), wi)
     }
 
+    /// [`Surface::eval`] and [`Surface::pdf`]. Where the surface `is_smooth`, light that is above the shading
+    /// normal's horizon alone has its value too, though [`Surface::sample`] never takes such a direction.
+    pub fn eval_and_pdf(&self, wi: UnitVec3, is_smooth: bool) -> (Rgb, f32) {
+        if !self.is_torn(*wi) {
+            return self.bsdf.value_and_pdf(&self.view(), wi);
+        }
+        let is_above = self.interaction.shading_normal.dot(*wi) > 0.0;
+        match is_smooth && is_above {
+            true => (self.bsdf.value(&self.view(), wi), 0.0),
+            false => (Rgb::BLACK, 0.0),
+        }
+    }
+
     /// Draws a direction for two independent numbers `u_lobe` in `[0, 1)` and `u` in its square;
     /// `None` where nothing comes from the one that was drawn.
     pub fn sample(&self, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {

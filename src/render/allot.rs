@@ -90,6 +90,7 @@ type Classes = Vec<(Share, Class)>;
 /// How many samples each half of each pixel is to get.
 pub(super) struct Allotment {
     pattern: Pattern,
+    exponent: f64,
     /// Samples come in multiples of this: a round of cells.
     unit: u32,
     pixels: u64,
@@ -110,21 +111,11 @@ pub(super) struct Outcome {
     pub error: f64,
 }
 
-/// The power of n with which the squared error of `pattern` falls where most of it is, at edges:
-/// Ramamoorthi et al. 2012, "A Theory of Monte Carlo Visibility Sampling". Rounds of jittered cells are
-/// independent of each other.
-pub(super) fn exponent(pattern: Pattern) -> f64 {
-    match pattern {
-        Pattern::Grid | Pattern::Jittered | Pattern::Random => 1.0,
-        Pattern::Sobol => 1.5,
-    }
-}
-
 impl Allotment {
-    /// Looks at the samples of all `tiles` of `film`; each half of each pixel has some.
-    pub fn new(film: Rect, tiles: &[Tile], pattern: Pattern, unit: u32) -> Self {
+    /// Looks at the samples of all `tiles` of `film`; each half of each pixel has some. Squared errors fall with this
+    /// power of the number of samples.
+    pub fn new(film: Rect, tiles: &[Tile], pattern: Pattern, unit: u32, exponent: f64) -> Self {
         let difficulty = Difficulty::of(film, tiles);
-        let exponent = exponent(pattern);
         let measured: Vec<_> = tiles
             .par_iter()
             .map(|tile| Measured::of(tile, &difficulty, exponent))
@@ -144,6 +135,7 @@ impl Allotment {
         let classes = classes.into_iter().collect();
         Self {
             pattern,
+            exponent,
             unit,
             pixels: film.area(),
             shares,
@@ -165,8 +157,8 @@ impl Allotment {
 
     /// The largest scale whose outcome is `within`, where all smaller ones are.
     pub fn scale(&self, within: impl Fn(&Outcome) -> bool) -> f64 {
-        // Scores are the 0.4th or 0.5th power of weights from 1e-30 to not much more than 1.
-        let (mut low, mut high) = (-50.0_f64, 90.0_f64);
+        // Scores are the 0.25th to 0.67th power of weights from 1e-30 to not much more than 1.
+        let (mut low, mut high) = (-50.0_f64, 110.0_f64);
         for _ in 0..18 {
             let middle = 0.5 * (low + high);
             if within(&self.at(middle.exp2())) {
@@ -220,13 +212,17 @@ impl Allotment {
     }
 
     fn outcome(&self, scale: f64, least: u32) -> Outcome {
-        let exponent = exponent(self.pattern);
         let mut sum = Outcome::default();
+        // Neighbours in the order of scores have the same count more often than not, and powers are slow.
+        let mut fallen = (1, 1.0);
         for &(share, class) in &self.classes {
             let count = self.count(share, scale, least);
             sum.samples += class.count * u64::from(count);
             sum.rays += class.cost * f64::from(count);
-            sum.error += class.weight * fall(count, exponent);
+            if count != fallen.0 {
+                fallen = (count, fall(count, self.exponent));
+            }
+            sum.error += class.weight * fallen.1;
         }
         sum
     }
@@ -435,7 +431,7 @@ fn part(difficulty: f32, taken: u32, exponent: f64) -> f64 {
     0.25 * f64::from(difficulty) * fall(taken.max(1), exponent)
 }
 
-/// n^-`exponent` for multiples of a half: quicker than any power.
+/// What of a squared error is left with `n` samples.
 fn fall(n: u32, exponent: f64) -> f64 {
-    f64::from(n).sqrt().powi(-(2.0 * exponent) as i32)
+    f64::from(n).powf(-exponent)
 }

@@ -1,7 +1,7 @@
 //! How a render goes on: the same for every pixel, or more where the error is.
 
 use super::Job;
-use super::allot::{Allotment, Outcome, exponent};
+use super::allot::{Allotment, Outcome};
 use super::tile::{Halves, Tile};
 use crate::film::RayCounts;
 use crate::sampling::Pattern;
@@ -26,6 +26,8 @@ pub(super) struct Step {
 /// The same number of samples for every pixel.
 pub(super) struct Uniform {
     pattern: Pattern,
+    /// The power of the number of samples with which the squared error falls.
+    exponent: f64,
     pixels: u64,
     /// Samples of a pixel now, and what they come in multiples of.
     taken: u64,
@@ -37,11 +39,13 @@ pub(super) struct Uniform {
 const MOST: u64 = 1 << 31;
 
 impl Course {
-    /// The course of a render that has come to `tiles`; where it `is_adaptive`, each half of each pixel has samples.
-    pub fn of(job: &Job, tiles: &[Tile], is_adaptive: bool) -> Self {
+    /// The course of a render that has come to `tiles`, whose squared error falls with the power `exponent` of the
+    /// number of samples; where it `is_adaptive`, each half of each pixel has samples.
+    pub fn of(job: &Job, tiles: &[Tile], is_adaptive: bool, exponent: f64) -> Self {
         let pattern = job.settings.sampling.pattern;
         if is_adaptive {
-            return Self::Adaptive(Allotment::new(job.crop, tiles, pattern, round(job)));
+            let allotment = Allotment::new(job.crop, tiles, pattern, round(job), exponent);
+            return Self::Adaptive(allotment);
         }
         let mut rays = RayCounts::default();
         tiles.iter().for_each(|tile| rays.add(&tile.rays));
@@ -51,6 +55,7 @@ impl Course {
             .map_or(0, |t| t.taken[0].map(u64::from).iter().sum());
         Self::Uniform(Uniform {
             pattern,
+            exponent,
             pixels,
             taken,
             unit: u64::from(pattern.sets() * round(job)),
@@ -119,7 +124,7 @@ impl Uniform {
         Outcome {
             samples: all,
             rays: all as f64 * self.rays_per_sample,
-            error: (samples.max(1) as f64).powf(-exponent(self.pattern)),
+            error: (samples.max(1) as f64).powf(-self.exponent),
         }
     }
 

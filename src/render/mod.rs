@@ -8,6 +8,7 @@
 mod allot;
 mod backdrop;
 mod course;
+mod decay;
 mod forecast;
 mod replay;
 pub mod stability;
@@ -20,7 +21,7 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use crate::camera::Camera;
-use crate::film::{Film, Pixel, Rect, StoppedBy};
+use crate::film::{ErrorSums, Film, Pixel, Rect, StoppedBy};
 use crate::integrate::{Account, Aov, Integrator, LightGroups, LightPart, integrator};
 use crate::prepare::PreparedScene;
 use crate::scene::Settings;
@@ -31,6 +32,7 @@ pub use replay::{Replay, ReplayedRay, replay};
 
 use backdrop::Foreground;
 use course::{Course, Step, aim_all, dealt, round};
+use decay::Decay;
 use forecast::{Bounds, Pace};
 use stop::Stop;
 use tile::{Halves, Tile, assemble, error_of, tiles};
@@ -167,6 +169,7 @@ pub fn render_within(
         cancel,
         observe,
         pace: Pace::start(),
+        decay: Decay::of(job.settings.sampling.pattern, job.settings.integrator),
         tiles: tiles(job),
         done: AtomicU64::new(0),
         total: AtomicU64::new(job.crop.area() * u64::from(limits.samples)),
@@ -186,6 +189,7 @@ struct Run<'a> {
     cancel: &'a AtomicBool,
     observe: &'a (dyn Fn(Event) + Sync),
     pace: Pace,
+    decay: Decay,
     tiles: Vec<Tile>,
     done: AtomicU64,
     /// Samples in all, as far as is known.
@@ -202,17 +206,24 @@ impl Run<'_> {
         if !self.limits.is_open() && !is_adaptive {
             return self.remaining_passes();
         }
+        // What a pass was to make of the squared error, and what that was before.
+        let mut foreseen: Option<(f64, ErrorSums)> = None;
         loop {
-            let error = error_of(&self.tiles).map(|sums| sums.root());
+            let sums = error_of(&self.tiles);
+            let error = sums.map(|sums| sums.root());
+            if let (Some((fall, before)), Some(after)) = (&foreseen, &sums) {
+                self.decay.learn(*fall, before, after);
+            }
             if let (Some(error), Some(enough)) = (error, self.limits.error)
                 && error <= enough
             {
                 return StoppedBy::Error;
             }
-            let course = Course::of(self.job, &self.tiles, is_adaptive);
+            let course = Course::of(self.job, &self.tiles, is_adaptive, self.decay.exponent());
             let Some(step) = self.next_step(&course, error) else {
                 return StoppedBy::Samples;
             };
+            foreseen = sums.map(|sums| (step.outcome.error / course.now().error, sums));
             course.aim(&mut self.tiles, &step);
             if let Some(end) = self.pass(self.limits.deadline) {
                 return end;

@@ -144,22 +144,17 @@ impl Sampler {
         u64::from(self.index) * u64::from(count) + u64::from(j)
     }
 
-    /// In which direction a path goes on from its vertex number `vertex`, in `[0, 1)²`.
-    pub fn direction(&self, vertex: u32) -> Vec2 {
-        self.even(DimensionSet::event(vertex, Event::Direction))
-    }
-
-    /// By which lobe of the material it goes on from there, and whether it goes on at all; both in
-    /// `[0, 1)`. For Sobol points these and [`Self::direction`] form one four-dimensional set.
-    pub fn lobe_and_survival(&self, vertex: u32) -> [f32; 2] {
-        let u = match self.pattern {
-            Pattern::Sobol => {
-                let set = DimensionSet::event(vertex, Event::Direction);
-                self.sobol(set, u64::from(self.index), Pair::Second)
-            }
-            _ => self.even(DimensionSet::event(vertex, Event::Lobe)),
-        };
-        u.into()
+    /// How a path goes on from its vertex number `vertex`: in which direction; and by which lobe of the material,
+    /// and whether at all. All in `[0, 1)`; for Sobol they form one four-dimensional set.
+    pub fn scattering(&self, vertex: u32) -> [Vec2; 2] {
+        let set = DimensionSet::event(vertex, Event::Direction);
+        match self.pattern {
+            Pattern::Sobol => sobol::points(self.index, self.key.with(set.0).with(0)),
+            _ => [
+                self.even(set),
+                self.even(DimensionSet::event(vertex, Event::Lobe)),
+            ],
+        }
     }
 
     /// Which of many lights it looks at from there, in `[0, 1)`, with more digits than a single has.

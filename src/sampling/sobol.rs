@@ -20,9 +20,23 @@ pub(super) enum Pair {
 /// a scrambled Sobol sequence, and each single point is uniform.
 #[inline(always)]
 pub(super) fn point(index: u32, pair: Pair, key: Key) -> Vec2 {
-    let shuffle = key.bits() as u32;
+    scrambled(shuffled(index, key), pair, key)
+}
+
+/// [`point`] of both pairs.
+pub(super) fn points(index: u32, key: Key) -> [Vec2; 2] {
+    let index = shuffled(index, key);
+    [Pair::First, Pair::Second].map(|pair| scrambled(index, pair, key))
+}
+
+#[inline(always)]
+fn shuffled(index: u32, key: Key) -> u32 {
+    scramble_reversed(index.reverse_bits(), key.bits() as u32).reverse_bits()
+}
+
+#[inline(always)]
+fn scrambled(index: u32, pair: Pair, key: Key) -> Vec2 {
     let scramble = key.with(pair as u64).bits();
-    let index = scramble_reversed(index.reverse_bits(), shuffle).reverse_bits();
     let x_and_y = unscrambled(index, pair);
     let x = scramble_reversed(x_and_y as u32, scramble as u32);
     let y = scramble_reversed((x_and_y >> 32) as u32, (scramble >> 32) as u32);

@@ -32,11 +32,24 @@ fn exact_disk(u: Vec2) -> DVec2 {
 fn sin_cos(angle: f64) -> (f64, f64) {
     let square = angle * angle;
     let mut sin = -1.0 / 39_916_800.0;
-    for term in [1.0 / 362_880.0, -1.0 / 5_040.0, 1.0 / 120.0, -1.0 / 6.0, 1.0] {
+    for term in [
+        1.0 / 362_880.0,
+        -1.0 / 5_040.0,
+        1.0 / 120.0,
+        -1.0 / 6.0,
+        1.0,
+    ] {
         sin = sin * square + term;
     }
     let mut cos = 1.0 / 479_001_600.0;
-    for term in [-1.0 / 3_628_800.0, 1.0 / 40_320.0, -1.0 / 720.0, 1.0 / 24.0, -0.5, 1.0] {
+    for term in [
+        -1.0 / 3_628_800.0,
+        1.0 / 40_320.0,
+        -1.0 / 720.0,
+        1.0 / 24.0,
+        -0.5,
+        1.0,
+    ] {
         cos = cos * square + term;
     }
     (angle * sin, cos)

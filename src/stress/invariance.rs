@@ -54,8 +54,9 @@ enum Promise {
     Expectation,
 }
 
-/// Renders `scene` as it is and changed, and says what moved; `command` renders the same picture, and is
-/// shown with the sample that moved most.
+/// Renders `scene` as it is and changed, by its own technique, and says what moved; `command` renders the same
+/// picture, and is shown with the sample that moved most. Views of normals and the like, which do change, give
+/// way to `whitted`.
 pub fn examine(
     scene: &Scene,
     camera: &Placed<Camera>,
@@ -63,7 +64,7 @@ pub fn examine(
     command: &str,
 ) -> Vec<Report> {
     let settings = &Settings {
-        integrator: IntegratorKind::Whitted,
+        integrator: technique(settings.integrator),
         ..settings.clone()
     };
     let prepared = prepare_within(scene, Builder::default(), FLATTEN_BUDGET).scene;
@@ -73,13 +74,23 @@ pub fn examine(
         camera,
         settings,
     };
-    let changes = changes(scene, camera);
+    let changes = changes(scene, camera, settings.integrator);
     let report = |change: &Change| Report {
         id: change.id.to_owned(),
         case: change.what.clone(),
         checks: vec![check(scene, &reference, change, command)],
     };
     changes.iter().map(report).collect()
+}
+
+/// What a scene is tried with that is to be rendered with `kind`.
+pub fn technique(kind: IntegratorKind) -> IntegratorKind {
+    match kind {
+        IntegratorKind::Whitted | IntegratorKind::Path => kind,
+        IntegratorKind::Normal | IntegratorKind::Depth | IntegratorKind::Albedo => {
+            IntegratorKind::Whitted
+        }
+    }
 }
 
 /// A picture, and what it takes to look closer at it.
@@ -90,7 +101,7 @@ struct View<'a> {
     settings: &'a Settings,
 }
 
-fn changes(scene: &Scene, camera: &Placed<Camera>) -> Vec<Change> {
+fn changes(scene: &Scene, camera: &Placed<Camera>, technique: IntegratorKind) -> Vec<Change> {
     let plain = |id, what: String, kind, promise| Change {
         id,
         what,
@@ -102,7 +113,9 @@ fn changes(scene: &Scene, camera: &Placed<Camera>) -> Vec<Change> {
     let size = scene
         .bounds()
         .map_or(1.0, |(min, max)| (max - min).max_element());
-    let is_soft = camera.item.lens_radius > 0.0 || scene.lights.iter().any(|l| !l.item.is_delta());
+    let is_path = technique == IntegratorKind::Path;
+    let is_soft =
+        is_path || camera.item.lens_radius > 0.0 || scene.lights.iter().any(|l| !l.item.is_delta());
     let turned = if is_soft {
         Promise::Expectation
     } else {
@@ -237,10 +250,11 @@ fn rmse(before: &Film, after: &Film) -> f64 {
     }
 }
 
-/// How far two pixels are apart: the squares of the differences over those of the first.
+/// How far two pixels are apart: the squares of the differences over those of their mean, which is nearer to the truth
+/// than either.
 fn square(before: &Film, after: &Film, i: usize) -> f64 {
     let (a, b) = (before.pixels[i].value(), after.pixels[i].value());
-    let weights = crate::film::relative_weights(a);
+    let weights = crate::film::relative_weights([0, 1, 2].map(|c| 0.5 * (a[c] + b[c])));
     (0..3).map(|c| (a[c] - b[c]).powi(2) * weights[c]).sum()
 }
 

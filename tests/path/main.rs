@@ -3,9 +3,13 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../common/project.rs"]
+mod project;
 
 mod environment;
+mod formats;
 mod light_tree;
+mod terminator;
 mod transport;
 mod triangle;
 

@@ -19,7 +19,7 @@ use halfshade::texture::{TexturedRgb, TexturedScalar};
 use crate::common::build::*;
 use crate::common::floor::{disk, irradiance, matte, plane};
 
-fn path(samples: u32, max_depth: u32) -> Settings {
+pub fn path(samples: u32, max_depth: u32) -> Settings {
     Settings {
         integrator: IntegratorKind::Path,
         max_depth,
@@ -40,7 +40,7 @@ fn emissive(radiance: f32) -> Material {
     }
 }
 
-fn sphere_light(center: Vec3, radius: f32, is_visible: bool) -> Light {
+pub fn sphere_light(center: Vec3, radius: f32, is_visible: bool) -> Light {
     Light::Sphere(SphereLight {
         center,
         radius,
@@ -62,7 +62,13 @@ fn rectangle_light(is_visible: bool) -> Light {
 }
 
 /// Mean and standard error of samples that go along one ray.
-fn mean(scene: &Scene, weighing: Weighing, eye: Vec3, way: Vec3, settings: &Settings) -> [f64; 2] {
+pub fn mean(
+    scene: &Scene,
+    weighing: Weighing,
+    eye: Vec3,
+    way: Vec3,
+    settings: &Settings,
+) -> [f64; 2] {
     let settings = Settings {
         sampling: SamplingConfig {
             pattern: Pattern::Random,

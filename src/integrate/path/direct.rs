@@ -6,6 +6,7 @@ use super::shadow::let_through;
 use super::walk::{Walk, beyond, through};
 use crate::color::Rgb;
 use crate::integrate::visibility::transmittance;
+use crate::integrate::way::way;
 use crate::integrate::{RayKind, RayLog, RayRecord};
 use crate::light::ShadowEnd;
 use crate::prepare::Surface;
@@ -43,7 +44,9 @@ impl PathTracer<'_> {
             }
             return total;
         }
-        let chosen = self.lights.choose(place, sampler.light_choice(walk.vertex));
+        let chosen = self
+            .lights
+            .choose(place, || sampler.light_choice(walk.vertex));
         let Some((light, probability)) = chosen else {
             return Rgb::BLACK;
         };
@@ -56,6 +59,11 @@ impl PathTracer<'_> {
     }
 
     /// What one sample of a light adds, of which `expected` are taken.
+    ///
+    /// Shadow rays start on the smooth surface that vertex normals describe, paths go on from the triangle. Light below the
+    /// horizon of the triangle, which scattering never finds, is looked at alone, with its full weight.
+    /// Above it both ways count, and start apart by the height of the bulge: what stands so near that the one start sees
+    /// past it and the other does not is counted by the share of either.
     fn gathered(
         &self,
         surface: &Surface,
@@ -65,53 +73,43 @@ impl PathTracer<'_> {
         expected: f64,
         log: &mut RayLog,
     ) -> Rgb {
-        let at = &surface.interaction;
+        let mut at = surface.interaction;
+        if !self.smooths_shadows {
+            at.smooth_point = None;
+        }
         let wi = incident.wi;
-        let cos = at.shading_normal.dot(*wi);
-        let side = at.geometric_normal.dot(*wi);
-        if cos * side <= 0.0 {
+        let Some(way) = way(&at, wi, incident.shadow) else {
             return Rgb::BLACK;
-        }
-        // The end of the shadow ray may be on the other side than the centre of the light.
-        if let ShadowEnd::Point(end) = incident.shadow
-            && at.geometric_normal.dot(end - at.point) * side <= 0.0
-        {
-            return Rgb::BLACK;
-        }
-        let scattered = surface.eval(wi) * cos.abs();
+        };
+        let (value, found) = surface.eval_and_pdf(wi, at.smooth_point.is_some());
+        let scattered = value * way.cos;
         if scattered.is_black() {
             return Rgb::BLACK;
         }
         // What has no surface is not found by scattering.
-        let met = if incident.density == 0.0 {
-            0.0
-        } else {
-            f64::from(surface.pdf(wi))
+        let met = match incident.density > 0.0 {
+            true => f64::from(found),
+            false => 0.0,
         };
         let weight = (self.weighing).weight(true, expected * incident.density, met);
         let unshadowed = incident.weight * scattered * (weight / expected as f32);
-        let ray = match incident.shadow {
-            ShadowEnd::Point(target) => at.spawn_ray_to(target),
-            ShadowEnd::Direction(direction) => at.spawn_ray(*direction),
-        };
-        let way = match incident.shadow {
+        let distance = match incident.shadow {
             ShadowEnd::Point(target) => target.distance(at.point),
             ShadowEnd::Direction(_) => f32::INFINITY,
         };
-        let around = if side > 0.0 {
-            walk.absorption
-        } else {
-            beyond(surface)
+        let around = match way.is_behind {
+            true => beyond(surface),
+            false => walk.absorption,
         };
         let absorbed = around.map_or(Rgb::WHITE, |absorption| {
-            through(absorption, self.scene.world_distance(way))
+            through(absorption, self.scene.world_distance(distance))
         });
-        let value = unshadowed * absorbed * transmittance(self.scene, &ray, let_through);
+        let value = unshadowed * absorbed * transmittance(self.scene, &way.ray, let_through);
         let kind = RayKind::Shadow(light);
         log.add(kind, || RayRecord {
             kind,
             depth: walk.scattered,
-            ray,
+            ray: way.ray,
             t: None,
             weight: walk.throughput * value,
         });

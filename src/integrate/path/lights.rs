@@ -135,10 +135,14 @@ impl<'a> Lights<'a> {
         self.few.as_deref().filter(|_| place.is_first)
     }
 
-    /// Chooses a light for `place` by `u` in `[0, 1)`; its number and the probability of the choice.
-    pub fn choose(&self, place: &Place, u: f64) -> Option<(u32, f64)> {
+    /// Chooses a light for `place` by `u` in `[0, 1)`, which is asked for where there is a choice; its number and
+    /// the probability of the choice.
+    pub fn choose(&self, place: &Place, u: impl FnOnce() -> f64) -> Option<(u32, f64)> {
+        if let Some([only]) = self.few.as_deref() {
+            return Some((*only, 1.0));
+        }
         let groups = self.infinite.len() + usize::from(!self.tree.is_empty());
-        let scaled = u * groups as f64;
+        let scaled = u() * groups as f64;
         let group = (scaled as usize).min(groups.checked_sub(1)?);
         let share = 1.0 / groups as f64;
         match self.infinite.get(group) {
@@ -180,7 +184,7 @@ impl<'a> Lights<'a> {
             return Some(Incident {
                 wi: sample.wi,
                 weight: sample.weight,
-                density: light.density(point, sample.wi),
+                density: sample.density,
                 shadow: sample.shadow,
             });
         }

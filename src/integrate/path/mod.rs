@@ -34,6 +34,8 @@ pub struct PathTracer<'a> {
     scene: &'a PreparedScene<'a>,
     lights: Lights<'a>,
     max_depth: u32,
+    /// Whether shadow rays start on the surface that vertex normals describe.
+    smooths_shadows: bool,
     clamp: f32,
     /// Per light of the scene: samples at a surface that the camera sees.
     samples: Vec<u32>,
@@ -57,6 +59,7 @@ impl<'a> PathTracer<'a> {
         Self {
             scene,
             max_depth: settings.max_depth,
+            smooths_shadows: settings.shadow_terminator,
             clamp: settings.clamp.unwrap_or(f32::INFINITY),
             samples: (scene.lights.iter())
                 .map(|light| light_samples(light, settings.light_samples, pattern))
@@ -77,8 +80,8 @@ impl<'a> PathTracer<'a> {
     /// Sends the walk on from `surface`; `false` where it ends.
     fn scatter(&self, surface: &Surface, walk: &mut Walk, place: Place, sampler: &Sampler) -> bool {
         let at = &surface.interaction;
-        let [lobe, survival] = sampler.lobe_and_survival(walk.vertex);
-        let Some(sample) = surface.sample(lobe, sampler.direction(walk.vertex)) else {
+        let [direction, chance] = sampler.scattering(walk.vertex);
+        let Some(sample) = surface.sample(chance.x, direction) else {
             return false;
         };
         walk.vertex += 1;
@@ -97,7 +100,7 @@ impl<'a> PathTracer<'a> {
         }
         walk.scattered += 1;
         let may_end_at_a_light = self.can_meet_light || walk.scattered < self.max_depth;
-        if !may_end_at_a_light || !survives(walk, survival) {
+        if !may_end_at_a_light || !survives(walk, chance.y) {
             return false;
         }
         walk.kind = kind_of(&sample);

@@ -5,13 +5,14 @@ mod plain;
 
 use self::plain::Plain;
 use super::visibility::{straight_through, transmittance};
+use super::way::way;
 use super::{CameraSample, Integrator, RayKind, RayLog, RayRecord, Sight, Source, light_samples};
 use crate::bvh::Hit;
 use crate::color::Rgb;
-use crate::interaction::{Interaction, LitSide};
-use crate::light::{Light, LightSample, ShadowEnd};
+use crate::interaction::Interaction;
+use crate::light::{Light, LightSample};
 use crate::material::{Bsdf, View, reflect, refract};
-use crate::math::{Ray, Vec3};
+use crate::math::Ray;
 use crate::prepare::{PreparedScene, Surface};
 use crate::sampling::Sampler;
 use crate::scene::Settings;
@@ -267,11 +268,8 @@ impl<'a> Whitted<'a> {
         view: &View,
         sample: &LightSample,
     ) -> Option<(Ray, Rgb)> {
-        let mut way = way_to(&at.lit_side(), sample);
-        if !way.is_open && bsdf.is_translucent() {
-            way = way_through(at, sample);
-        }
-        if !way.is_open {
+        let way = way(at, sample.wi, sample.shadow)?;
+        if way.is_behind && !bsdf.is_translucent() {
             return None;
         }
         let scattered = bsdf.shown(view, sample.wi);
@@ -378,48 +376,6 @@ impl<'a> Whitted<'a> {
         } else {
             Rgb::BLACK
         }
-    }
-}
-
-/// A way from a surface to a light.
-struct Way {
-    /// The shadow ray.
-    ray: Ray,
-    /// Magnitude of the cosine of the light's direction with the shading normal.
-    cos: f32,
-    /// Whether the light comes from the side that it is for, by either normal.
-    is_open: bool,
-}
-
-/// The way to what a light was sampled at in front of the surface.
-#[inline(always)]
-fn way_to(at: &LitSide, sample: &LightSample) -> Way {
-    let cos = at.shading_normal.dot(*sample.wi);
-    let (ray, is_end_seen) = match sample.shadow {
-        // The end of the shadow ray may be below the horizon of a point that sees the centre.
-        ShadowEnd::Point(end) => (at.shadow_ray_to(end), at.can_see(end - at.point)),
-        ShadowEnd::Direction(direction) => (at.shadow_ray(*direction), true),
-    };
-    Way {
-        ray,
-        cos,
-        // Not `&&`: rows are computed without a branch.
-        is_open: (cos > 0.0) & at.can_see(*sample.wi) & is_end_seen,
-    }
-}
-
-/// As [`way_to`], for light from behind that is scattered through the surface.
-fn way_through(at: &Interaction, sample: &LightSample) -> Way {
-    let cos = at.shading_normal.dot(*sample.wi);
-    let is_behind = |direction: Vec3| at.geometric_normal.dot(direction) < 0.0;
-    let (ray, is_end_behind) = match sample.shadow {
-        ShadowEnd::Point(end) => (at.spawn_ray_to(end), is_behind(end - at.point)),
-        ShadowEnd::Direction(direction) => (at.spawn_ray(*direction), true),
-    };
-    Way {
-        ray,
-        cos: -cos,
-        is_open: cos <= 0.0 && is_behind(*sample.wi) && is_end_behind,
     }
 }
 

@@ -2,9 +2,10 @@
 //!
 //! It is what [`Whitted::follow`] comes to there, bit for bit, with the arithmetic done in rows.
 
-use super::{Pending, Whitted, Work, way_to};
+use super::{Pending, Whitted, Work};
 use crate::bvh::Hit;
 use crate::color::Rgb;
+use crate::integrate::way::way_in_front;
 use crate::integrate::{CameraSample, RayLog, Sight, Source};
 use crate::light::{Light, LightSampleRow};
 use crate::material::Bsdf;
@@ -56,9 +57,10 @@ impl WayRow {
     #[inline(always)]
     fn find(&mut self, i: usize, surfaces: &PlainRow, samples: &LightSampleRow) {
         let at = surfaces.lit_side(i);
-        let way = way_to(&at, &samples.get(i));
+        let sample = samples.get(i);
+        let (way, is_in_front) = way_in_front(&at, sample.wi, sample.shadow);
         let is_seen = at.shading_normal.dot(*surfaces.wo(i)) > 0.0;
-        self.is_open[i] = samples.is_some(i) & is_seen & way.is_open;
+        self.is_open[i] = samples.is_some(i) & is_seen & is_in_front;
         self.origin.set(i, way.ray.origin);
         self.direction.set(i, way.ray.direction);
         self.t_max[i] = way.ray.t_max;
