@@ -2,6 +2,7 @@
 
 use std::num::NonZeroU32;
 
+use super::lines::LineError;
 use crate::math::{DVec3, Vec2, Vec3};
 
 /// Place in one of the file's lists. It counts from 1, as the file does, so that an
@@ -45,13 +46,6 @@ impl Corners {
         self.vertices.push(corner.vertex);
         set(&mut self.uvs, place, corner.uv);
         set(&mut self.normals, place, corner.normal);
-    }
-
-    /// Drops all but the first `len`.
-    pub fn truncate(&mut self, len: usize) {
-        self.vertices.truncate(len);
-        self.uvs.truncate(len);
-        self.normals.truncate(len);
     }
 
     /// Corner number `i`, counted from 0.
@@ -157,6 +151,52 @@ pub struct Geometry {
 }
 
 impl Geometry {
+    /// Adds the colour of the vertex that comes next. Others are white once one vertex has a colour.
+    pub fn add_color(&mut self, color: Option<[f32; 3]>) {
+        if color.is_some() {
+            self.colors.resize(self.positions.len(), WHITE);
+        }
+        if color.is_some() || !self.colors.is_empty() {
+            self.colors.push(color.unwrap_or(WHITE));
+        }
+    }
+
+    /// The lists of a file from those of its `blocks`, in order, which have no parts, runs and names yet.
+    ///
+    /// # Errors
+    /// Where faces have more corners than can be counted.
+    pub fn join(mut blocks: Vec<Self>) -> Result<Self, LineError> {
+        let corners: usize = blocks.iter().map(|block| block.corners.len()).sum();
+        if u32::try_from(corners).is_err() {
+            return Err(LineError {
+                line: None,
+                what: format!("it has more than {} corners of faces", u32::MAX),
+            });
+        }
+        if blocks.len() == 1
+            && let Some(block) = blocks.pop()
+        {
+            return Ok(block);
+        }
+        let [mut vertices, mut corners] = [0, 0];
+        let mut lists = Lists::default();
+        for block in blocks {
+            let faces = block.face_ends.into_iter();
+            lists.face_ends.push(faces.map(|end| end + corners as u32).collect());
+            lists.colors.push((vertices, block.colors));
+            vertices += block.positions.len();
+            lists.positions.push(block.positions);
+            lists.uvs.push(block.uvs);
+            lists.normals.push(block.normals);
+            lists.corner_uvs.push((corners, block.corners.uvs));
+            lists.corner_normals.push((corners, block.corners.normals));
+            corners += block.corners.vertices.len();
+            lists.corners.push(block.corners.vertices);
+            lists.libraries.extend(block.libraries);
+        }
+        Ok(lists.join(vertices))
+    }
+
     /// The corners of face `face`.
     pub fn corners_of(&self, face: usize) -> std::ops::Range<usize> {
         let start = if face == 0 {
@@ -173,4 +213,69 @@ impl Geometry {
         let end = next.map_or(self.face_ends.len(), |r| r.first_face as usize);
         self.runs[run].first_face as usize..end
     }
+}
+
+const WHITE: [f32; 3] = [1.0; 3];
+
+/// The lists of all blocks of a file, kind by kind; some with the place of each block's first element.
+#[derive(Default)]
+struct Lists {
+    positions: Vec<Vec<DVec3>>,
+    colors: Vec<(usize, Vec<[f32; 3]>)>,
+    uvs: Vec<Vec<Vec2>>,
+    normals: Vec<Vec<Vec3>>,
+    corners: Vec<Vec<Index>>,
+    corner_uvs: Vec<(usize, Vec<Option<Index>>)>,
+    corner_normals: Vec<(usize, Vec<Option<Index>>)>,
+    face_ends: Vec<Vec<u32>>,
+    libraries: Vec<String>,
+}
+
+impl Lists {
+    /// The lists of the file, which has `vertices` vertices.
+    fn join(self, vertices: usize) -> Geometry {
+        let mut geometry = Geometry {
+            libraries: self.libraries,
+            ..Geometry::default()
+        };
+        let Geometry {
+            positions,
+            colors,
+            uvs,
+            normals,
+            corners,
+            face_ends,
+            ..
+        } = &mut geometry;
+        rayon::scope(|scope| {
+            scope.spawn(|_| *positions = self.positions.concat());
+            scope.spawn(|_| corners.vertices = self.corners.concat());
+            scope.spawn(|_| corners.uvs = concat_with_gaps(self.corner_uvs, None));
+            scope.spawn(|_| corners.normals = concat_with_gaps(self.corner_normals, None));
+            scope.spawn(|_| *normals = self.normals.concat());
+            scope.spawn(|_| *uvs = self.uvs.concat());
+            scope.spawn(|_| *face_ends = self.face_ends.concat());
+            scope.spawn(|_| {
+                *colors = concat_with_gaps(self.colors, WHITE);
+                if !colors.is_empty() {
+                    colors.resize(vertices, WHITE);
+                }
+            });
+        });
+        geometry
+    }
+}
+
+/// One list that has each of `lists` at its place, and `gap` in between; it ends with the last that is not empty.
+fn concat_with_gaps<T: Copy>(lists: Vec<(usize, Vec<T>)>, gap: T) -> Vec<T> {
+    let ends = lists.iter().filter(|(_, list)| !list.is_empty());
+    let total = ends.map(|(start, list)| start + list.len()).max();
+    let mut joined = Vec::with_capacity(total.unwrap_or(0));
+    for (start, list) in lists {
+        if !list.is_empty() {
+            joined.resize(start, gap);
+            joined.extend_from_slice(&list);
+        }
+    }
+    joined
 }

@@ -2,10 +2,13 @@
 
 use std::borrow::Cow;
 
+use memchr::memchr;
+
 /// The statements of an OBJ or MTL file, with the numbers of the lines that they start on.
 ///
 /// Lines end with LF, CRLF, or, in a file without any LF, CR. A backslash at the end of a line
 /// that is not a comment joins it with the next. A byte-order mark is skipped.
+#[derive(Clone)]
 pub struct Lines<'a> {
     rest: &'a [u8],
     separator: u8,
@@ -20,6 +23,15 @@ pub struct Line<'a> {
     pub text: Cow<'a, [u8]>,
 }
 
+/// What is wrong with a file, and on which line.
+#[derive(Debug, PartialEq, Eq)]
+pub struct LineError {
+    /// Counted from 1; `None` where it is the file as a whole.
+    pub line: Option<usize>,
+    /// What is wrong.
+    pub what: String,
+}
+
 impl<'a> Lines<'a> {
     /// The lines of a whole file.
     pub fn new(bytes: &'a [u8]) -> Self {
@@ -32,13 +44,52 @@ impl<'a> Lines<'a> {
         }
     }
 
+    /// The same lines in parts of `size` bytes, from 1, or a little more: each ends with a statement. Every part
+    /// counts its lines from 1.
+    pub fn split(self, size: usize) -> Vec<Self> {
+        let mut parts = Vec::with_capacity(self.rest.len() / size + 1);
+        let mut rest = self.rest;
+        while rest.len() > size {
+            let (part, others) = rest.split_at(self.end_of_statement(rest, size));
+            parts.push(Self { rest: part, ..self });
+            rest = others;
+        }
+        parts.push(Self { rest, ..self });
+        parts
+    }
+
+    /// Behind the first line of `text` that ends at byte `from` or later and is not continued.
+    fn end_of_statement(&self, text: &[u8], mut from: usize) -> usize {
+        while let Some(length) = memchr(self.separator, &text[from..]) {
+            let line = &text[..from + length];
+            let line = line.strip_suffix(b"\r").unwrap_or(line);
+            from += length + 1;
+            if line.last() != Some(&b'\\') {
+                return from;
+            }
+        }
+        text.len()
+    }
+
+    /// The same lines behind `lines` others.
+    pub fn behind(self, lines: usize) -> Self {
+        Self {
+            number: self.number + lines,
+            ..self
+        }
+    }
+
+    /// How many physical lines there were so far.
+    pub fn count_so_far(&self) -> usize {
+        self.number
+    }
+
     fn next_physical(&mut self) -> Option<&'a [u8]> {
         if self.rest.is_empty() {
             return None;
         }
         self.number += 1;
-        let end = self.rest.iter().position(|&b| b == self.separator);
-        let (line, rest) = match end {
+        let (line, rest) = match memchr(self.separator, self.rest) {
             Some(end) => (&self.rest[..end], &self.rest[end + 1..]),
             None => (self.rest, &self.rest[self.rest.len()..]),
         };
@@ -67,8 +118,8 @@ impl<'a> Iterator for Lines<'a> {
     fn next(&mut self) -> Option<Line<'a>> {
         let line = self.next_physical()?;
         let number = self.number;
-        let is_comment = line.trim_ascii_start().starts_with(b"#");
-        let text = if line.last() == Some(&b'\\') && !is_comment {
+        let is_comment = || line.trim_ascii_start().starts_with(b"#");
+        let text = if line.last() == Some(&b'\\') && !is_comment() {
             Cow::Owned(self.continued(line))
         } else {
             Cow::Borrowed(line)
@@ -84,7 +135,7 @@ pub struct Words<'a>(&'a [u8]);
 impl<'a> Words<'a> {
     /// The words before the first `#`: for statements that hold numbers.
     pub fn of_numbers(text: &'a [u8]) -> Self {
-        let end = text.iter().position(|&b| b == b'#');
+        let end = memchr(b'#', text);
         Self(&text[..end.unwrap_or(text.len())])
     }
 
@@ -95,6 +146,25 @@ impl<'a> Words<'a> {
             |&i: &usize| text[i] == b'#' && (i == 0 || text[i - 1].is_ascii_whitespace());
         let end = (0..text.len()).find(starts_comment);
         Self(&text[..end.unwrap_or(text.len())])
+    }
+
+    /// The next word as a number; the word itself where it is none.
+    pub fn number(&mut self) -> Option<Result<f64, &'a [u8]>> {
+        let value = self.take_with(|text| fast_float2::parse_partial(text).ok());
+        value.map(Ok).or_else(|| self.next().map(Err))
+    }
+
+    /// The value that `read` finds at the start of the next word, where it says that it took all bytes of it.
+    pub fn take_with<T>(&mut self, read: impl FnOnce(&'a [u8]) -> Option<(T, usize)>) -> Option<T> {
+        self.0 = self.0.trim_ascii_start();
+        let (value, length) = read(self.0).filter(|&(_, length)| self.ends_at(length))?;
+        self.0 = &self.0[length..];
+        Some(value)
+    }
+
+    /// Whether a word can end before byte `place`.
+    fn ends_at(&self, place: usize) -> bool {
+        self.0.get(place).is_none_or(u8::is_ascii_whitespace)
     }
 
     /// Everything that is left, as one name that may have blanks inside.
@@ -118,7 +188,7 @@ impl<'a> Iterator for Words<'a> {
 
 /// The number that `word` is; `None` where it is none.
 pub fn number(word: &[u8]) -> Option<f64> {
-    std::str::from_utf8(word).ok()?.parse().ok()
+    fast_float2::parse(word).ok()
 }
 
 /// `word` for a message: readable and short, whatever its bytes are.

@@ -13,6 +13,7 @@
 //! Colours of vertices are taken as linear. Faces without a material are a neutral matte grey.
 
 mod anchor;
+mod blocks;
 mod geometry;
 mod library;
 mod lines;
@@ -20,10 +21,13 @@ mod meshes;
 mod mtl;
 mod names;
 mod normals;
+mod notes;
 mod polygon;
 mod reader;
 mod references;
+mod runs;
 mod search;
+mod skipped;
 
 use std::path::Path;
 
@@ -45,7 +49,7 @@ use crate::scene::{Instance, MeshId, Scene};
 /// a vertex that is not there.
 pub fn import(path: &Path) -> Result<Model, ImportError> {
     let bytes = files::read(path).map_err(|error| ImportError::io(path, error))?;
-    let (mut geometry, mut warnings) = reader::read(&bytes).map_err(|error| match error.line {
+    let (mut geometry, mut warnings) = blocks::read(&bytes).map_err(|error| match error.line {
         Some(line) => ImportError::invalid_at(path, format!("line {line}"), error.what),
         None => ImportError::invalid(path, error.what),
     })?;

@@ -1,6 +1,9 @@
 //! Names of objects, materials and files.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
+
+use super::lines::{Line, Words};
 
 /// Names that have been used, each once, and the one that is in force.
 ///
@@ -45,6 +48,19 @@ impl Names {
     /// All used names, in the order of their first use.
     pub fn into_list(self) -> Vec<String> {
         self.list
+    }
+}
+
+/// What stands behind the keyword of `line`, as one name.
+pub fn name_of<'a>(line: &Line<'a>) -> Cow<'a, [u8]> {
+    fn behind_keyword(text: &[u8]) -> &[u8] {
+        let mut words = Words::of_names(text);
+        words.next();
+        words.rest()
+    }
+    match &line.text {
+        Cow::Borrowed(text) => Cow::Borrowed(behind_keyword(text)),
+        Cow::Owned(text) => Cow::Owned(behind_keyword(text).to_owned()),
     }
 }
 
