@@ -18,7 +18,7 @@ pub struct PartMesh {
 /// One mesh for each part of `geometry`, in the order of its parts.
 ///
 /// # Errors
-/// Where the lists do not fit together; [`super::reader::read`] makes none such.
+/// Where the lists do not fit together; [`super::blocks::read`] makes none such.
 pub fn build(
     geometry: &Geometry,
     anchor: Anchor,
@@ -89,16 +89,26 @@ struct Builder<'a> {
 impl Builder<'_> {
     fn part(&mut self, part: Part, runs: &[usize]) -> Result<PartMesh, MeshError> {
         let geometry = self.geometry;
-        let mut triangles = Vec::new();
+        let faces = || runs.iter().map(|&run| geometry.faces_of(run));
+        let corners: usize = faces().map(|f| geometry.corners_of_all(f).len()).sum();
+        let count = corners - 2 * faces().map(|faces| faces.len()).sum::<usize>();
         let mut corners_without_uv = 0;
-        for face in runs.iter().flat_map(|&run| geometry.faces_of(run)) {
-            self.face.clear();
-            for i in geometry.corners_of(face) {
-                let corner = geometry.corners.get(i);
-                corners_without_uv += u64::from(corner.uv.is_none());
-                self.face.push(self.table.vertex(corner));
+        let mut triangles = Vec::with_capacity(count);
+        if self.table.keeps_file_order && corners == 3 * count {
+            // All are triangles, and their corners are the mesh's vertices.
+            let (all, _) = geometry.corners.vertices.as_chunks();
+            triangles.extend_from_slice(all);
+            corners_without_uv = corners as u64;
+        } else {
+            for face in faces().flatten() {
+                self.face.clear();
+                for i in geometry.corners_of(face) {
+                    let corner = geometry.corners.get(i);
+                    corners_without_uv += u64::from(corner.uv.is_none());
+                    self.face.push(self.table.vertex(corner));
+                }
+                self.triangles_of(face, &mut triangles);
             }
-            self.triangles_of(face, &mut triangles);
         }
         let corners = self.table.take();
         let name = part.object.map_or("", |o| &geometry.objects[o as usize]);
@@ -115,10 +125,13 @@ impl Builder<'_> {
             triangles.push([a, b, c]);
             return;
         }
-        let vertices = &self.geometry.corners.vertices()[self.geometry.corners_of(face)];
+        let vertices = &self.geometry.corners.vertices[self.geometry.corners_of(face)];
         self.ring.clear();
-        self.ring
-            .extend(vertices.iter().map(|&v| at(&self.geometry.positions, v)));
+        self.ring.extend(
+            vertices
+                .iter()
+                .map(|&v| self.geometry.positions[v as usize]),
+        );
         let (cut, outcome) = self.triangulator.cut(&self.ring);
         triangles.extend(cut.iter().map(|t| t.map(|i| self.face[i as usize])));
         match outcome {
@@ -136,7 +149,10 @@ impl Builder<'_> {
         triangles: Vec<[u32; 3]>,
     ) -> Result<Mesh, MeshError> {
         let geometry = self.geometry;
-        let position = |corner: &Corner| self.anchor.local(at(&geometry.positions, corner.vertex));
+        let position = |corner: &Corner| {
+            self.anchor
+                .local(geometry.positions[corner.vertex as usize])
+        };
         let positions: Vec<Vec3> = corners.iter().map(position).collect();
         let infinite = positions.iter().filter(|p| !p.is_finite()).count();
         self.infinite_vertices += infinite as u64;
@@ -152,7 +168,7 @@ impl Builder<'_> {
         }
         if !geometry.colors.is_empty() {
             let color = |c: &Corner| {
-                let [r, g, b] = at(&geometry.colors, c.vertex);
+                let [r, g, b] = geometry.colors[c.vertex as usize];
                 [r, g, b, 1.0]
             };
             mesh = mesh.with_colors(corners.iter().map(color).collect())?;
@@ -182,13 +198,11 @@ impl VertexTable {
     fn new(geometry: &Geometry) -> Self {
         let vertices = geometry.positions.len();
         let keeps_file_order = geometry.parts.len() == 1 && geometry.corners.are_bare();
-        let corners = (1..=vertices as u32)
-            .filter_map(Index::new)
-            .map(|vertex| Corner {
-                vertex,
-                uv: None,
-                normal: None,
-            });
+        let corners = (0..vertices as u32).map(|vertex| Corner {
+            vertex,
+            uv: None,
+            normal: None,
+        });
         Self {
             keeps_file_order,
             corners: if keeps_file_order {
@@ -207,11 +221,11 @@ impl VertexTable {
 
     /// The mesh's vertex at `corner`.
     fn vertex(&mut self, corner: Corner) -> u32 {
-        let place = corner.vertex.get() - 1;
         if self.keeps_file_order {
-            return place;
+            return corner.vertex;
         }
-        let head = self.heads[place as usize];
+        let place = corner.vertex as usize;
+        let head = self.heads[place];
         let mut next = head;
         for _ in 0..Self::MOST_COMPARED {
             let Some(index) = next else { break };
@@ -223,14 +237,14 @@ impl VertexTable {
         self.corners.push(corner);
         self.previous.push(head);
         let count = self.corners.len() as u32;
-        self.heads[place as usize] = Index::new(count);
+        self.heads[place] = Index::new(count);
         count - 1
     }
 
     /// The corner of each vertex; the table is empty afterwards.
     fn take(&mut self) -> Vec<Corner> {
         for corner in &self.corners {
-            if let Some(head) = self.heads.get_mut(corner.vertex.get() as usize - 1) {
+            if let Some(head) = self.heads.get_mut(corner.vertex as usize) {
                 *head = None;
             }
         }

@@ -25,6 +25,7 @@ mod notes;
 mod polygon;
 mod reader;
 mod references;
+mod room;
 mod runs;
 mod search;
 mod skipped;

@@ -1,9 +1,8 @@
 //! Names of objects, materials and files.
 
-use std::borrow::Cow;
 use std::collections::HashMap;
 
-use super::lines::{Line, Words};
+use super::lines::Words;
 
 /// Names that have been used, each once, and the one that is in force.
 ///
@@ -51,17 +50,11 @@ impl Names {
     }
 }
 
-/// What stands behind the keyword of `line`, as one name.
-pub fn name_of<'a>(line: &Line<'a>) -> Cow<'a, [u8]> {
-    fn behind_keyword(text: &[u8]) -> &[u8] {
-        let mut words = Words::of_names(text);
-        words.next();
-        words.rest()
-    }
-    match &line.text {
-        Cow::Borrowed(text) => Cow::Borrowed(behind_keyword(text)),
-        Cow::Owned(text) => Cow::Owned(behind_keyword(text).to_owned()),
-    }
+/// What stands behind the keyword of the line `text`, as one name.
+pub fn name_of(text: &[u8]) -> &[u8] {
+    let mut words = Words::of_names(text);
+    words.next();
+    words.rest()
 }
 
 /// The file names of an `mtllib` statement. Names may have blanks inside: each ends with the word

@@ -68,7 +68,12 @@ impl Notes {
         }
         let mut warnings = Warnings::default();
         let [uvs, normals] = [geometry.uvs.len(), geometry.normals.len()];
-        let [late_uvs, late_normals] = geometry.corners.drop_above(uvs, normals);
+        let [late_uvs, late_normals] =
+            if self.uvs.are_within(uvs) && self.normals.are_within(normals) {
+                [0, 0]
+            } else {
+                geometry.corners.drop_above(uvs, normals)
+            };
         self.uvs.warn(late_uvs, uvs, &mut warnings);
         self.normals.warn(late_normals, normals, &mut warnings);
         self.skipped.warn(&mut warnings);

@@ -1,36 +1,41 @@
 //! The statements of a block of an OBJ file to lists.
 
-use super::blocks::Start;
-use super::geometry::{Corner, Geometry};
+use super::geometry::{Corner, WHITE};
 use super::lines::{Line, LineError, Lines, Words, number, shown};
 use super::names::{library_names, name_of};
 use super::notes::Notes;
 use super::references::{message, usual_place};
+use super::room::{Room, Start};
 use super::runs::{Change, Setting};
 use crate::math::{DVec3, Vec2};
 
-/// What the statements of a block say. Indices count from the start of the file.
-pub struct Block<'a> {
-    /// Its elements and faces; without parts, runs and names.
-    pub lists: Geometry,
+/// What the statements of a block say, beside what they put into the lists of the file.
+#[derive(Default)]
+pub struct Block {
     /// What its statements change for the faces behind them, in order.
-    pub changes: Vec<Change<'a>>,
+    pub changes: Vec<Change>,
+    /// Colours of its vertices, linear; empty where none has one, else at least up to the last that has.
+    pub colors: Vec<[f32; 3]>,
+    /// Files of materials.
+    pub libraries: Vec<String>,
     /// What is to be judged at the end of the file.
     pub notes: Notes,
+    /// Whether a corner of its faces has texture coordinates.
+    pub has_uvs: bool,
+    /// Whether a corner of its faces has a normal.
+    pub has_normals: bool,
 }
 
-/// Reads the statements of `lines`, which are those behind `start`.
+/// Reads the statements of `lines`, which are those behind `start`, into `room`, which is as large as
+/// [`Start::count`] says of them.
 ///
 /// # Errors
 /// Where a statement that the picture depends on is not what the format demands.
-pub fn read<'a>(lines: Lines<'a>, start: Start) -> Result<Block<'a>, LineError> {
+pub fn read(lines: Lines<'_>, start: Start, room: Room<'_>) -> Result<Block, LineError> {
     let mut reader = Reader {
         start,
-        block: Block {
-            lists: Geometry::default(),
-            changes: Vec::new(),
-            notes: Notes::default(),
-        },
+        room,
+        block: Block::default(),
         face: Vec::new(),
     };
     for line in lines.behind(start.lines) {
@@ -44,14 +49,15 @@ pub fn read<'a>(lines: Lines<'a>, start: Start) -> Result<Block<'a>, LineError> 
 
 struct Reader<'a> {
     start: Start,
-    block: Block<'a>,
+    room: Room<'a>,
+    block: Block,
     /// The corners of the face at hand.
     face: Vec<Corner>,
 }
 
-impl<'a> Reader<'a> {
-    fn statement(&mut self, line: &Line<'a>) -> Result<(), String> {
-        let mut words = Words::of_numbers(&line.text);
+impl Reader<'_> {
+    fn statement(&mut self, line: &Line<'_>) -> Result<(), String> {
+        let mut words = line.words();
         let Some(keyword) = words.next() else {
             return Ok(());
         };
@@ -65,11 +71,11 @@ impl<'a> Reader<'a> {
             b"p" => notes.skipped.points += words.count() as u64,
             b"l" => notes.skipped.lines += 1,
             b"s" => self.change(Setting::Smoothing(smoothing(words)?)),
-            b"o" => self.change(Setting::Object(name_of(line))),
-            b"usemtl" => self.change(Setting::Material(name_of(line))),
+            b"o" => self.change(Setting::Object(name_of(&line.text).into())),
+            b"usemtl" => self.change(Setting::Material(name_of(&line.text).into())),
             b"mtllib" => {
-                let names = library_names(&name_of(line));
-                self.block.lists.libraries.extend(names);
+                let names = library_names(name_of(&line.text));
+                self.block.libraries.extend(names);
             }
             // Groups are other names for faces; they are merged.
             b"g" => {}
@@ -78,9 +84,9 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn change(&mut self, to: Setting<'a>) {
+    fn change(&mut self, to: Setting) {
         self.block.changes.push(Change {
-            face: self.block.lists.face_ends.len(),
+            face: self.room.face_ends.count(),
             to,
         });
     }
@@ -101,9 +107,12 @@ impl<'a> Reader<'a> {
         if count == 2 || count > 3 || (count == 3 && color.is_none()) {
             self.block.notes.skipped.surplus_numbers += 1;
         }
-        self.block.lists.add_color(color);
-        let positions = &mut self.block.lists.positions;
-        positions.push(DVec3::from_array(position));
+        if color.is_some() || !self.block.colors.is_empty() {
+            let place = self.room.positions.count();
+            self.block.colors.resize(place, WHITE);
+            self.block.colors.push(color.unwrap_or(WHITE));
+        }
+        self.room.positions.push(DVec3::from_array(position));
         Ok(())
     }
 
@@ -113,13 +122,13 @@ impl<'a> Reader<'a> {
         let v = words.number().unwrap_or(Ok(0.0));
         let v = v.map_err(|word| not_a_number(WHAT, word))?;
         let uv = Vec2::new(u as f32, (1.0 - v) as f32);
-        self.block.lists.uvs.push(uv);
+        self.room.uvs.push(uv);
         Ok(())
     }
 
     fn normal(&mut self, mut words: Words<'_>) -> Result<(), String> {
         let normal = DVec3::from_array(numbers::<3>("a normal", &mut words)?);
-        self.block.lists.normals.push(normal.as_vec3());
+        self.room.normals.push(normal.as_vec3());
         Ok(())
     }
 
@@ -132,16 +141,21 @@ impl<'a> Reader<'a> {
             self.block.notes.skipped.small_faces += 1;
             return Ok(());
         }
-        let lists = &mut self.block.lists;
-        for &corner in &self.face {
-            lists.corners.push(corner);
+        for corner in &self.face {
+            self.block.has_uvs |= corner.uv.is_some();
+            self.block.has_normals |= corner.normal.is_some();
+            self.room.corners.push(corner);
         }
-        // `Geometry::join` refuses files with more corners than this counts.
-        lists.face_ends.push(lists.corners.len() as u32);
+        let end = self.start.corners + self.room.corners.count();
+        self.room.face_ends.push(end as u32);
         Ok(())
     }
 
-    fn next_corner(&mut self, words: &mut Words<'_>, line: usize) -> Result<Option<Corner>, String> {
+    fn next_corner(
+        &mut self,
+        words: &mut Words<'_>,
+        line: usize,
+    ) -> Result<Option<Corner>, String> {
         if let Some(corner) = words.take_with(|text| self.usual_corner(text)) {
             return Ok(Some(corner));
         }
@@ -162,7 +176,12 @@ impl<'a> Reader<'a> {
                 normal = usual_place(text, &mut at, normals)?;
             }
         }
-        Some((Corner { vertex, uv, normal }, at))
+        let corner = Corner {
+            vertex: vertex.get() - 1,
+            uv,
+            normal,
+        };
+        Some((corner, at))
     }
 
     fn corner(&mut self, word: &[u8], line: usize) -> Result<Corner, String> {
@@ -176,7 +195,7 @@ impl<'a> Reader<'a> {
             .resolve(vertex, positions, line)
             .map_err(|problem| message(&problem, vertex, "vertex", positions))?;
         Ok(Corner {
-            vertex,
+            vertex: vertex.get() - 1,
             uv: notes.uvs.resolve(uv, uvs, line)?,
             normal: notes.normals.resolve(normal, normals, line)?,
         })
@@ -184,11 +203,10 @@ impl<'a> Reader<'a> {
 
     /// How many positions, texture coordinates and normals the file has so far.
     fn counts(&self) -> [usize; 3] {
-        let lists = &self.block.lists;
         [
-            self.start.positions + lists.positions.len(),
-            self.start.uvs + lists.uvs.len(),
-            self.start.normals + lists.normals.len(),
+            self.start.positions + self.room.positions.count(),
+            self.start.uvs + self.room.uvs.count(),
+            self.start.normals + self.room.normals.count(),
         ]
     }
 }

@@ -111,6 +111,11 @@ impl Attributes {
         self.first_dropped = self.first_dropped.or(later.first_dropped);
     }
 
+    /// Whether a list of `count` elements is long enough for all of them.
+    pub fn are_within(&self, count: usize) -> bool {
+        self.references.first_above(count).is_none()
+    }
+
     /// Warns of the indices that were out of range: `late` of them showed at the end of the file,
     /// where the list had `count` elements.
     pub fn warn(&self, late: u64, count: usize, warnings: &mut Warnings) {
@@ -143,6 +148,7 @@ pub fn message(problem: &BadIndex, word: &[u8], what: &str, count: usize) -> Str
 
 /// The place at byte `*at` of `text` in a list of `count` elements, and `*at` moved behind it, where it
 /// is written the usual way: `Some(None)` without a digit, `None` where [`References::resolve`] must judge.
+#[inline]
 pub fn usual_place(text: &[u8], at: &mut usize, count: usize) -> Option<Option<Index>> {
     /// Digits that cannot overflow.
     const MOST_DIGITS: usize = 9;

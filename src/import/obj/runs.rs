@@ -1,25 +1,24 @@
 //! Statements that hold for the faces behind them: objects, materials, smoothing groups.
 
-use std::borrow::Cow;
 use std::collections::HashMap;
 
 use super::geometry::{Geometry, Part, Run};
 use super::names::Names;
 
 /// What holds from some face on.
-pub struct Change<'a> {
+pub struct Change {
     /// The first face that it holds for, counted from the first of its block.
     pub face: usize,
     /// What it sets.
-    pub to: Setting<'a>,
+    pub to: Setting,
 }
 
 /// What one statement sets.
-pub enum Setting<'a> {
+pub enum Setting {
     /// `o`
-    Object(Cow<'a, [u8]>),
+    Object(Box<[u8]>),
     /// `usemtl`
-    Material(Cow<'a, [u8]>),
+    Material(Box<[u8]>),
     /// `s`; 0: none
     Smoothing(u32),
 }
@@ -38,7 +37,7 @@ pub struct Runs {
 
 impl Runs {
     /// Adds a block of `faces` faces.
-    pub fn add(&mut self, changes: &[Change<'_>], faces: usize) {
+    pub fn add(&mut self, changes: &[Change], faces: usize) {
         let mut first = 0;
         for change in changes {
             self.add_faces(change.face - first);
