@@ -36,7 +36,8 @@ pub fn read(path: &Path) -> io::Result<Vec<u8>> {
 
 /// The first `length` bytes of a file, which several threads copy at the same time.
 fn read_in_pieces(path: &Path, length: usize) -> io::Result<Vec<u8>> {
-    let mut bytes = vec![0; length];
+    // Fails in place of ending the program where there is not so much; `vec!` would not.
+    let mut bytes = bytemuck::try_zeroed_vec(length).map_err(|()| io::ErrorKind::OutOfMemory)?;
     let pieces = bytes.par_chunks_mut(PIECE).enumerate();
     pieces.try_for_each(|(i, piece)| {
         let mut file = File::open(path)?;

@@ -65,6 +65,13 @@ impl Corners {
         ]
     }
 
+    /// How many of the corners in `range` have no texture coordinates.
+    pub fn without_uv(&self, range: Range<usize>) -> u64 {
+        let with = self.uvs.get(range.clone()).unwrap_or_default();
+        let with = with.iter().filter(|uv| uv.is_some()).count();
+        (range.len() - with) as u64
+    }
+
     /// Whether every corner has a normal.
     pub fn all_have_normals(&self) -> bool {
         !self.normals.is_empty() && self.normals.iter().all(Option::is_some)

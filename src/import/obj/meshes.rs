@@ -1,7 +1,11 @@
 //! Lists of faces to one mesh per object and material.
 
+use std::ops::Range;
+
+use rayon::prelude::*;
+
 use super::anchor::Anchor;
-use super::geometry::{Corner, Geometry, Index, Part, at};
+use super::geometry::{Corner, Corners, Geometry, Index, Part, at};
 use super::polygon::{Outcome, Triangulator};
 use crate::import::{WarningCode, Warnings};
 use crate::math::{DVec3, Vec2, Vec3};
@@ -92,24 +96,24 @@ impl Builder<'_> {
         let faces = || runs.iter().map(|&run| geometry.faces_of(run));
         let corners: usize = faces().map(|f| geometry.corners_of_all(f).len()).sum();
         let count = corners - 2 * faces().map(|faces| faces.len()).sum::<usize>();
-        let mut corners_without_uv = 0;
         let mut triangles = Vec::with_capacity(count);
-        if self.table.keeps_file_order && corners == 3 * count {
-            // All are triangles, and their corners are the mesh's vertices.
-            let (all, _) = geometry.corners.vertices.as_chunks();
-            triangles.extend_from_slice(all);
-            corners_without_uv = corners as u64;
+        if corners == 3 * count {
+            for corners in faces().map(|faces| geometry.corners_of_all(faces)) {
+                self.table
+                    .triangles(&geometry.corners, corners, &mut triangles);
+            }
         } else {
             for face in faces().flatten() {
                 self.face.clear();
                 for i in geometry.corners_of(face) {
-                    let corner = geometry.corners.get(i);
-                    corners_without_uv += u64::from(corner.uv.is_none());
-                    self.face.push(self.table.vertex(corner));
+                    self.face.push(self.table.vertex(geometry.corners.get(i)));
                 }
                 self.triangles_of(face, &mut triangles);
             }
         }
+        let corners_without_uv = faces()
+            .map(|faces| geometry.corners.without_uv(geometry.corners_of_all(faces)))
+            .sum();
         let corners = self.table.take();
         let name = part.object.map_or("", |o| &geometry.objects[o as usize]);
         let mesh = self.mesh(name, &corners, triangles)?;
@@ -149,31 +153,39 @@ impl Builder<'_> {
         triangles: Vec<[u32; 3]>,
     ) -> Result<Mesh, MeshError> {
         let geometry = self.geometry;
-        let position = |corner: &Corner| {
-            self.anchor
-                .local(geometry.positions[corner.vertex as usize])
+        let position = |c: &Corner| self.anchor.local(geometry.positions[c.vertex as usize]);
+        let normal = |c: &Corner| c.normal.map_or(Vec3::ZERO, |n| at(&geometry.normals, n));
+        let origin = Vec2::new(0.0, 1.0);
+        let uv = |c: &Corner| c.uv.map_or(origin, |uv| at(&geometry.uvs, uv));
+        let color = |c: &Corner| {
+            let [r, g, b] = geometry.colors[c.vertex as usize];
+            [r, g, b, 1.0]
         };
-        let positions: Vec<Vec3> = corners.iter().map(position).collect();
+        let positions = each(corners, position);
         let infinite = positions.iter().filter(|p| !p.is_finite()).count();
         self.infinite_vertices += infinite as u64;
         let mut mesh = Mesh::new(name, positions, triangles)?;
         if corners.iter().any(|c| c.normal.is_some()) {
-            let normal = |c: &Corner| c.normal.map_or(Vec3::ZERO, |n| at(&geometry.normals, n));
-            mesh = mesh.with_normals(corners.iter().map(normal).collect())?;
+            mesh = mesh.with_normals(each(corners, normal))?;
         }
         if corners.iter().any(|c| c.uv.is_some()) {
-            let origin = Vec2::new(0.0, 1.0);
-            let uv = |c: &Corner| c.uv.map_or(origin, |uv| at(&geometry.uvs, uv));
-            mesh = mesh.with_uv_set(corners.iter().map(uv).collect())?;
+            mesh = mesh.with_uv_set(each(corners, uv))?;
         }
         if !geometry.colors.is_empty() {
-            let color = |c: &Corner| {
-                let [r, g, b] = geometry.colors[c.vertex as usize];
-                [r, g, b, 1.0]
-            };
-            mesh = mesh.with_colors(corners.iter().map(color).collect())?;
+            mesh = mesh.with_colors(each(corners, color))?;
         }
         Ok(mesh)
+    }
+}
+
+/// What `value` says of each corner; on all threads where there are many.
+fn each<T: Send>(corners: &[Corner], value: impl Fn(&Corner) -> T + Send + Sync) -> Vec<T> {
+    /// Takes a thread some tenths of a millisecond.
+    const MANY: usize = 1 << 16;
+    if corners.len() < MANY {
+        corners.iter().map(value).collect()
+    } else {
+        corners.par_iter().map(value).collect()
     }
 }
 
@@ -216,6 +228,17 @@ impl VertexTable {
                 vec![None; vertices]
             },
             previous: Vec::new(),
+        }
+    }
+
+    /// Adds triangles whose corners are those of `range`.
+    fn triangles(&mut self, corners: &Corners, range: Range<usize>, to: &mut Vec<[u32; 3]>) {
+        if self.keeps_file_order {
+            let (triangles, _) = corners.vertices[range].as_chunks();
+            to.extend_from_slice(triangles);
+        } else {
+            let first = range.step_by(3);
+            to.extend(first.map(|i| [i, i + 1, i + 2].map(|i| self.vertex(corners.get(i)))));
         }
     }
 

@@ -1,12 +1,12 @@
 //! Wavefront OBJ, with its MTL materials.
 //!
-//! Bytes go through [`reader`] (statements to lists), [`normals`] (those that the file leaves to be
-//! computed), [`anchor`] (double to single precision) and [`meshes`] (one mesh per object and
-//! material; groups are merged); [`library`] brings the materials.
+//! Bytes go through [`blocks`] (statements to lists, several blocks of them at a time), [`normals`] (those
+//! that the file leaves to be computed), [`anchor`] (double to single precision) and [`meshes`] (one mesh
+//! per object and material; groups are merged); [`library`] brings the materials.
 //!
 //! The reader is our own. `tobj`, which tests compare it with, cuts every polygon into a fan,
 //! which is wrong for concave ones, reports errors without line or element, reads no smoothing
-//! groups, and drops the colours of vertices where some have none.
+//! groups, drops the colours of vertices where some have none, and uses one thread.
 //!
 //! Positions are read as doubles; a model that is far from the origin for its size becomes
 //! single precision about its own middle, and its instances carry that middle in their transform.
