@@ -46,7 +46,7 @@ pub fn load(path: &Path, overrides: Overrides) -> Imported {
 }
 
 /// Models that are too large to keep are made before a scene asks for them.
-fn make_large_models() {
+pub fn make_large_models() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
         let folder = root().join("target/models");

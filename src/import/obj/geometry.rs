@@ -1,6 +1,7 @@
 //! What the statements of an OBJ file say, as lists that are not yet meshes.
 
 use std::num::NonZeroU32;
+use std::ops::Range;
 
 use crate::math::{DVec3, Vec2, Vec3};
 
@@ -13,47 +14,33 @@ pub fn at<T: Copy>(list: &[T], index: Index) -> T {
     list[index.get() as usize - 1]
 }
 
+/// The colour of vertices without one.
+pub const WHITE: [f32; 3] = [1.0; 3];
+
 /// Where a face touches a vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Corner {
-    /// Which position.
-    pub vertex: Index,
+    /// Which position, counted from 0.
+    pub vertex: u32,
     /// Which texture coordinates.
     pub uv: Option<Index>,
     /// Which normal.
     pub normal: Option<Index>,
 }
 
-/// The corners of all faces. Lists of attributes are as long as the last corner that has one, so
-/// that a file without them pays nothing.
-#[derive(Default)]
+/// The corners of all faces. A list of attributes is empty where no corner has one, so that a file without
+/// them pays nothing.
+#[derive(Debug, Default, PartialEq)]
 pub struct Corners {
-    vertices: Vec<Index>,
-    uvs: Vec<Option<Index>>,
-    normals: Vec<Option<Index>>,
+    /// The position of each, counted from 0.
+    pub vertices: Vec<u32>,
+    /// The texture coordinates of each.
+    pub uvs: Vec<Option<Index>>,
+    /// The normal of each.
+    pub normals: Vec<Option<Index>>,
 }
 
 impl Corners {
-    /// How many there are.
-    pub fn len(&self) -> usize {
-        self.vertices.len()
-    }
-
-    /// Adds one at the end.
-    pub fn push(&mut self, corner: Corner) {
-        let place = self.len();
-        self.vertices.push(corner.vertex);
-        set(&mut self.uvs, place, corner.uv);
-        set(&mut self.normals, place, corner.normal);
-    }
-
-    /// Drops all but the first `len`.
-    pub fn truncate(&mut self, len: usize) {
-        self.vertices.truncate(len);
-        self.uvs.truncate(len);
-        self.normals.truncate(len);
-    }
-
     /// Corner number `i`, counted from 0.
     pub fn get(&self, i: usize) -> Corner {
         Corner {
@@ -63,14 +50,10 @@ impl Corners {
         }
     }
 
-    /// The vertices of all corners.
-    pub fn vertices(&self) -> &[Index] {
-        &self.vertices
-    }
-
     /// Gives corner `i` a normal.
     pub fn set_normal(&mut self, i: usize, normal: Index) {
-        set(&mut self.normals, i, Some(normal));
+        self.normals.resize(self.vertices.len(), None);
+        self.normals[i] = Some(normal);
     }
 
     /// Takes away every index of texture coordinates above `uvs` and of normals above
@@ -82,18 +65,21 @@ impl Corners {
         ]
     }
 
+    /// How many of the corners in `range` have no texture coordinates.
+    pub fn without_uv(&self, range: Range<usize>) -> u64 {
+        let with = self.uvs.get(range.clone()).unwrap_or_default();
+        let with = with.iter().filter(|uv| uv.is_some()).count();
+        (range.len() - with) as u64
+    }
+
+    /// Whether every corner has a normal.
+    pub fn all_have_normals(&self) -> bool {
+        !self.normals.is_empty() && self.normals.iter().all(Option::is_some)
+    }
+
     /// Whether no corner has texture coordinates or a normal.
     pub fn are_bare(&self) -> bool {
         self.uvs.is_empty() && self.normals.is_empty()
-    }
-}
-
-fn set(list: &mut Vec<Option<Index>>, place: usize, value: Option<Index>) {
-    if value.is_some() {
-        if list.len() <= place {
-            list.resize(place + 1, None);
-        }
-        list[place] = value;
     }
 }
 
@@ -130,7 +116,7 @@ pub struct Part {
 
 /// The lists of an OBJ file. Every corner's vertex is one of `positions`; its texture
 /// coordinates and normal are in their lists after [`Corners::drop_above`].
-#[derive(Default)]
+#[derive(Debug, Default, PartialEq)]
 pub struct Geometry {
     /// `v`, as written.
     pub positions: Vec<DVec3>,
@@ -158,17 +144,21 @@ pub struct Geometry {
 
 impl Geometry {
     /// The corners of face `face`.
-    pub fn corners_of(&self, face: usize) -> std::ops::Range<usize> {
-        let start = if face == 0 {
-            0
-        } else {
-            self.face_ends[face - 1]
+    pub fn corners_of(&self, face: usize) -> Range<usize> {
+        self.corners_of_all(face..face + 1)
+    }
+
+    /// The corners of consecutive faces.
+    pub fn corners_of_all(&self, faces: Range<usize>) -> Range<usize> {
+        let end_before = |face: usize| match face {
+            0 => 0,
+            _ => self.face_ends[face - 1] as usize,
         };
-        start as usize..self.face_ends[face] as usize
+        end_before(faces.start)..end_before(faces.end)
     }
 
     /// The faces of run number `run`.
-    pub fn faces_of(&self, run: usize) -> std::ops::Range<usize> {
+    pub fn faces_of(&self, run: usize) -> Range<usize> {
         let next = self.runs.get(run + 1);
         let end = next.map_or(self.face_ends.len(), |r| r.first_face as usize);
         self.runs[run].first_face as usize..end

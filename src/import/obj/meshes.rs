@@ -1,7 +1,11 @@
 //! Lists of faces to one mesh per object and material.
 
+use std::ops::Range;
+
+use rayon::prelude::*;
+
 use super::anchor::Anchor;
-use super::geometry::{Corner, Geometry, Index, Part, at};
+use super::geometry::{Corner, Corners, Geometry, Index, Part, at};
 use super::polygon::{Outcome, Triangulator};
 use crate::import::{WarningCode, Warnings};
 use crate::math::{DVec3, Vec2, Vec3};
@@ -18,7 +22,7 @@ pub struct PartMesh {
 /// One mesh for each part of `geometry`, in the order of its parts.
 ///
 /// # Errors
-/// Where the lists do not fit together; [`super::reader::read`] makes none such.
+/// Where the lists do not fit together; [`super::blocks::read`] makes none such.
 pub fn build(
     geometry: &Geometry,
     anchor: Anchor,
@@ -89,17 +93,27 @@ struct Builder<'a> {
 impl Builder<'_> {
     fn part(&mut self, part: Part, runs: &[usize]) -> Result<PartMesh, MeshError> {
         let geometry = self.geometry;
-        let mut triangles = Vec::new();
-        let mut corners_without_uv = 0;
-        for face in runs.iter().flat_map(|&run| geometry.faces_of(run)) {
-            self.face.clear();
-            for i in geometry.corners_of(face) {
-                let corner = geometry.corners.get(i);
-                corners_without_uv += u64::from(corner.uv.is_none());
-                self.face.push(self.table.vertex(corner));
+        let faces = || runs.iter().map(|&run| geometry.faces_of(run));
+        let corners: usize = faces().map(|f| geometry.corners_of_all(f).len()).sum();
+        let count = corners - 2 * faces().map(|faces| faces.len()).sum::<usize>();
+        let mut triangles = Vec::with_capacity(count);
+        if corners == 3 * count {
+            for corners in faces().map(|faces| geometry.corners_of_all(faces)) {
+                self.table
+                    .triangles(&geometry.corners, corners, &mut triangles);
             }
-            self.triangles_of(face, &mut triangles);
+        } else {
+            for face in faces().flatten() {
+                self.face.clear();
+                for i in geometry.corners_of(face) {
+                    self.face.push(self.table.vertex(geometry.corners.get(i)));
+                }
+                self.triangles_of(face, &mut triangles);
+            }
         }
+        let corners_without_uv = faces()
+            .map(|faces| geometry.corners.without_uv(geometry.corners_of_all(faces)))
+            .sum();
         let corners = self.table.take();
         let name = part.object.map_or("", |o| &geometry.objects[o as usize]);
         let mesh = self.mesh(name, &corners, triangles)?;
@@ -115,10 +129,13 @@ impl Builder<'_> {
             triangles.push([a, b, c]);
             return;
         }
-        let vertices = &self.geometry.corners.vertices()[self.geometry.corners_of(face)];
+        let vertices = &self.geometry.corners.vertices[self.geometry.corners_of(face)];
         self.ring.clear();
-        self.ring
-            .extend(vertices.iter().map(|&v| at(&self.geometry.positions, v)));
+        self.ring.extend(
+            vertices
+                .iter()
+                .map(|&v| self.geometry.positions[v as usize]),
+        );
         let (cut, outcome) = self.triangulator.cut(&self.ring);
         triangles.extend(cut.iter().map(|t| t.map(|i| self.face[i as usize])));
         match outcome {
@@ -136,28 +153,39 @@ impl Builder<'_> {
         triangles: Vec<[u32; 3]>,
     ) -> Result<Mesh, MeshError> {
         let geometry = self.geometry;
-        let position = |corner: &Corner| self.anchor.local(at(&geometry.positions, corner.vertex));
-        let positions: Vec<Vec3> = corners.iter().map(position).collect();
+        let position = |c: &Corner| self.anchor.local(geometry.positions[c.vertex as usize]);
+        let normal = |c: &Corner| c.normal.map_or(Vec3::ZERO, |n| at(&geometry.normals, n));
+        let origin = Vec2::new(0.0, 1.0);
+        let uv = |c: &Corner| c.uv.map_or(origin, |uv| at(&geometry.uvs, uv));
+        let color = |c: &Corner| {
+            let [r, g, b] = geometry.colors[c.vertex as usize];
+            [r, g, b, 1.0]
+        };
+        let positions = each(corners, position);
         let infinite = positions.iter().filter(|p| !p.is_finite()).count();
         self.infinite_vertices += infinite as u64;
         let mut mesh = Mesh::new(name, positions, triangles)?;
         if corners.iter().any(|c| c.normal.is_some()) {
-            let normal = |c: &Corner| c.normal.map_or(Vec3::ZERO, |n| at(&geometry.normals, n));
-            mesh = mesh.with_normals(corners.iter().map(normal).collect())?;
+            mesh = mesh.with_normals(each(corners, normal))?;
         }
         if corners.iter().any(|c| c.uv.is_some()) {
-            let origin = Vec2::new(0.0, 1.0);
-            let uv = |c: &Corner| c.uv.map_or(origin, |uv| at(&geometry.uvs, uv));
-            mesh = mesh.with_uv_set(corners.iter().map(uv).collect())?;
+            mesh = mesh.with_uv_set(each(corners, uv))?;
         }
         if !geometry.colors.is_empty() {
-            let color = |c: &Corner| {
-                let [r, g, b] = at(&geometry.colors, c.vertex);
-                [r, g, b, 1.0]
-            };
-            mesh = mesh.with_colors(corners.iter().map(color).collect())?;
+            mesh = mesh.with_colors(each(corners, color))?;
         }
         Ok(mesh)
+    }
+}
+
+/// What `value` says of each corner; on all threads where there are many.
+fn each<T: Send>(corners: &[Corner], value: impl Fn(&Corner) -> T + Send + Sync) -> Vec<T> {
+    /// Takes a thread some tenths of a millisecond.
+    const MANY: usize = 1 << 16;
+    if corners.len() < MANY {
+        corners.iter().map(value).collect()
+    } else {
+        corners.par_iter().map(value).collect()
     }
 }
 
@@ -182,13 +210,11 @@ impl VertexTable {
     fn new(geometry: &Geometry) -> Self {
         let vertices = geometry.positions.len();
         let keeps_file_order = geometry.parts.len() == 1 && geometry.corners.are_bare();
-        let corners = (1..=vertices as u32)
-            .filter_map(Index::new)
-            .map(|vertex| Corner {
-                vertex,
-                uv: None,
-                normal: None,
-            });
+        let corners = (0..vertices as u32).map(|vertex| Corner {
+            vertex,
+            uv: None,
+            normal: None,
+        });
         Self {
             keeps_file_order,
             corners: if keeps_file_order {
@@ -205,13 +231,24 @@ impl VertexTable {
         }
     }
 
+    /// Adds triangles whose corners are those of `range`.
+    fn triangles(&mut self, corners: &Corners, range: Range<usize>, to: &mut Vec<[u32; 3]>) {
+        if self.keeps_file_order {
+            let (triangles, _) = corners.vertices[range].as_chunks();
+            to.extend_from_slice(triangles);
+        } else {
+            let first = range.step_by(3);
+            to.extend(first.map(|i| [i, i + 1, i + 2].map(|i| self.vertex(corners.get(i)))));
+        }
+    }
+
     /// The mesh's vertex at `corner`.
     fn vertex(&mut self, corner: Corner) -> u32 {
-        let place = corner.vertex.get() - 1;
         if self.keeps_file_order {
-            return place;
+            return corner.vertex;
         }
-        let head = self.heads[place as usize];
+        let place = corner.vertex as usize;
+        let head = self.heads[place];
         let mut next = head;
         for _ in 0..Self::MOST_COMPARED {
             let Some(index) = next else { break };
@@ -223,14 +260,14 @@ impl VertexTable {
         self.corners.push(corner);
         self.previous.push(head);
         let count = self.corners.len() as u32;
-        self.heads[place as usize] = Index::new(count);
+        self.heads[place] = Index::new(count);
         count - 1
     }
 
     /// The corner of each vertex; the table is empty afterwards.
     fn take(&mut self) -> Vec<Corner> {
         for corner in &self.corners {
-            if let Some(head) = self.heads.get_mut(corner.vertex.get() as usize - 1) {
+            if let Some(head) = self.heads.get_mut(corner.vertex as usize) {
                 *head = None;
             }
         }

@@ -1,18 +1,19 @@
 //! Wavefront OBJ, with its MTL materials.
 //!
-//! Bytes go through [`reader`] (statements to lists), [`normals`] (those that the file leaves to be
-//! computed), [`anchor`] (double to single precision) and [`meshes`] (one mesh per object and
-//! material; groups are merged); [`library`] brings the materials.
+//! Bytes go through [`blocks`] (statements to lists, several blocks of them at a time), [`normals`] (those
+//! that the file leaves to be computed), [`anchor`] (double to single precision) and [`meshes`] (one mesh
+//! per object and material; groups are merged); [`library`] brings the materials.
 //!
 //! The reader is our own. `tobj`, which tests compare it with, cuts every polygon into a fan,
 //! which is wrong for concave ones, reports errors without line or element, reads no smoothing
-//! groups, and drops the colours of vertices where some have none.
+//! groups, drops the colours of vertices where some have none, and uses one thread.
 //!
 //! Positions are read as doubles; a model that is far from the origin for its size becomes
 //! single precision about its own middle, and its instances carry that middle in their transform.
 //! Colours of vertices are taken as linear. Faces without a material are a neutral matte grey.
 
 mod anchor;
+mod blocks;
 mod geometry;
 mod library;
 mod lines;
@@ -20,10 +21,14 @@ mod meshes;
 mod mtl;
 mod names;
 mod normals;
+mod notes;
 mod polygon;
 mod reader;
 mod references;
+mod room;
+mod runs;
 mod search;
+mod skipped;
 
 use std::path::Path;
 
@@ -45,7 +50,7 @@ use crate::scene::{Instance, MeshId, Scene};
 /// a vertex that is not there.
 pub fn import(path: &Path) -> Result<Model, ImportError> {
     let bytes = files::read(path).map_err(|error| ImportError::io(path, error))?;
-    let (mut geometry, mut warnings) = reader::read(&bytes).map_err(|error| match error.line {
+    let (mut geometry, mut warnings) = blocks::read(&bytes).map_err(|error| match error.line {
         Some(line) => ImportError::invalid_at(path, format!("line {line}"), error.what),
         None => ImportError::invalid(path, error.what),
     })?;

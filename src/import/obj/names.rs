@@ -2,6 +2,8 @@
 
 use std::collections::HashMap;
 
+use super::lines::Words;
+
 /// Names that have been used, each once, and the one that is in force.
 ///
 /// A name costs nothing until a face uses it: files may select many and use few.
@@ -46,6 +48,13 @@ impl Names {
     pub fn into_list(self) -> Vec<String> {
         self.list
     }
+}
+
+/// What stands behind the keyword of the line `text`, as one name.
+pub fn name_of(text: &[u8]) -> &[u8] {
+    let mut words = Words::of_names(text);
+    words.next();
+    words.rest()
 }
 
 /// The file names of an `mtllib` statement. Names may have blanks inside: each ends with the word

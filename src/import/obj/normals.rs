@@ -12,6 +12,9 @@ use crate::math::{DVec3, Vec3};
 /// Vertex Normals from Polygonal Facets"). Other corners get their face's own normal where
 /// others of their mesh have one; a mesh without any stays without, and is flat.
 pub fn complete(geometry: &mut Geometry) {
+    if geometry.corners.all_have_normals() && geometry.normals.iter().all(|&n| has_direction(n)) {
+        return;
+    }
     smooth_groups(geometry);
     let smooth = smooth_parts(geometry);
     for run in 0..geometry.runs.len() {
@@ -26,6 +29,9 @@ pub fn complete(geometry: &mut Geometry) {
 /// Whether each part has a corner with a normal.
 fn smooth_parts(geometry: &Geometry) -> Vec<bool> {
     let mut is_smooth = vec![false; geometry.parts.len()];
+    if geometry.corners.normals.is_empty() {
+        return is_smooth;
+    }
     for (number, run) in geometry.runs.iter().enumerate() {
         let slot = &mut is_smooth[run.part as usize];
         *slot = *slot
@@ -70,7 +76,7 @@ fn push(normals: &mut Vec<Vec3>, normal: Vec3) -> Option<Index> {
 fn ring(geometry: &Geometry, face: usize) -> Vec<DVec3> {
     geometry
         .corners_of(face)
-        .map(|i| at(&geometry.positions, geometry.corners.get(i).vertex))
+        .map(|i| geometry.positions[geometry.corners.vertices[i] as usize])
         .collect()
 }
 
@@ -113,7 +119,7 @@ fn smooth_groups(geometry: &mut Geometry) {
 struct VertexSums {
     /// By vertex: which of `sums` is its own.
     slots: Vec<Option<Index>>,
-    vertices: Vec<Index>,
+    vertices: Vec<u32>,
     sums: Vec<DVec3>,
 }
 
@@ -126,8 +132,8 @@ impl VertexSums {
         }
     }
 
-    fn add(&mut self, vertex: Index, normal: DVec3) {
-        let slot = &mut self.slots[vertex.get() as usize - 1];
+    fn add(&mut self, vertex: u32, normal: DVec3) {
+        let slot = &mut self.slots[vertex as usize];
         let index = slot.or_else(|| Index::new(self.sums.len() as u32 + 1));
         if slot.is_none() {
             *slot = index;
@@ -141,7 +147,7 @@ impl VertexSums {
 
     fn clear(&mut self) {
         for vertex in self.vertices.drain(..) {
-            self.slots[vertex.get() as usize - 1] = None;
+            self.slots[vertex as usize] = None;
         }
         self.sums.clear();
     }
@@ -185,7 +191,7 @@ fn interior_angle(ring: &[DVec3], place: usize, normal: DVec3) -> f64 {
 fn assign(geometry: &mut Geometry, face: usize, sums: &VertexSums, base: usize) {
     for i in geometry.corners_of(face) {
         let corner = geometry.corners.get(i);
-        let slot = sums.slots[corner.vertex.get() as usize - 1];
+        let slot = sums.slots[corner.vertex as usize];
         let normal = slot.and_then(|slot| slot.checked_add(base as u32));
         if let (None, Some(normal)) = (corner.normal, normal) {
             geometry.corners.set_normal(i, normal);

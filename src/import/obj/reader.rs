@@ -1,101 +1,94 @@
-//! The statements of an OBJ file to [`Geometry`].
+//! The statements of a block of an OBJ file to lists.
 
-use std::collections::{BTreeMap, HashMap};
-
-use super::geometry::{Corner, Geometry, Part, Run};
-use super::lines::{Line, Lines, Words, number, shown};
-use super::names::{Names, library_names};
-use super::references::{Attributes, BadIndex, References, message};
-use crate::import::{WarningCode, Warnings};
+use super::geometry::{Corner, WHITE};
+use super::lines::{Line, LineError, Lines, Words, number, shown};
+use super::names::{library_names, name_of};
+use super::notes::Notes;
+use super::references::{message, usual_place};
+use super::room::{Room, Start};
+use super::runs::{Change, Setting};
 use crate::math::{DVec3, Vec2};
 
-/// What is wrong with a file, and on which line.
-#[derive(Debug, PartialEq, Eq)]
-pub struct LineError {
-    /// Counted from 1; `None` where it is the file as a whole.
-    pub line: Option<usize>,
-    /// What is wrong.
-    pub what: String,
+/// What the statements of a block say, beside what they put into the lists of the file.
+#[derive(Default)]
+pub struct Block {
+    /// What its statements change for the faces behind them, in order.
+    pub changes: Vec<Change>,
+    /// Colours of its vertices, linear; empty where none has one, else at least up to the last that has.
+    pub colors: Vec<[f32; 3]>,
+    /// Files of materials.
+    pub libraries: Vec<String>,
+    /// What is to be judged at the end of the file.
+    pub notes: Notes,
+    /// Whether a corner of its faces has texture coordinates.
+    pub has_uvs: bool,
+    /// Whether a corner of its faces has a normal.
+    pub has_normals: bool,
 }
 
-/// Statements of free-form geometry.
-const FREE_FORM: [&str; 17] = [
-    "vp", "cstype", "deg", "bmat", "step", "curv", "curv2", "surf", "parm", "trim", "hole", "scrv",
-    "sp", "end", "con", "bzp", "bsp",
-];
-
-/// Reads a whole file.
+/// Reads the statements of `lines`, which are those behind `start`, into `room`, which is as large as
+/// [`Start::count`] says of them.
 ///
 /// # Errors
 /// Where a statement that the picture depends on is not what the format demands.
-pub fn read(bytes: &[u8]) -> Result<(Geometry, Warnings), LineError> {
+pub fn read(lines: Lines<'_>, start: Start, room: Room<'_>) -> Result<Block, LineError> {
     let mut reader = Reader {
-        geometry: Geometry::default(),
-        objects: Names::default(),
-        materials: Names::default(),
-        smoothing: 0,
-        part_ids: HashMap::new(),
-        vertices: References::default(),
-        uvs: Attributes::new("texture coordinate"),
-        normals: Attributes::new("normal"),
-        skipped: Skipped::default(),
-        has_statements: false,
+        start,
+        room,
+        block: Block::default(),
+        face: Vec::new(),
     };
-    for line in Lines::new(bytes) {
+    for line in lines.behind(start.lines) {
         reader.statement(&line).map_err(|what| LineError {
             line: Some(line.number),
             what,
         })?;
     }
-    reader.finish()
+    Ok(reader.block)
 }
 
-struct Reader {
-    geometry: Geometry,
-    objects: Names,
-    materials: Names,
-    smoothing: u32,
-    part_ids: HashMap<Part, u32>,
-    vertices: References,
-    uvs: Attributes,
-    normals: Attributes,
-    skipped: Skipped,
-    has_statements: bool,
+struct Reader<'a> {
+    start: Start,
+    room: Room<'a>,
+    block: Block,
+    /// The corners of the face at hand.
+    face: Vec<Corner>,
 }
 
-/// How often something was passed over.
-#[derive(Default)]
-struct Skipped {
-    points: u64,
-    lines: u64,
-    small_faces: u64,
-    surplus_numbers: u64,
-    statements: BTreeMap<String, u64>,
-}
-
-impl Reader {
+impl Reader<'_> {
     fn statement(&mut self, line: &Line<'_>) -> Result<(), String> {
-        let mut words = Words::of_numbers(&line.text);
+        let mut words = line.words();
         let Some(keyword) = words.next() else {
             return Ok(());
         };
-        self.has_statements = true;
+        let notes = &mut self.block.notes;
+        notes.has_statements = true;
         match keyword {
             b"v" => self.vertex(words)?,
             b"vt" => self.uv(words)?,
             b"vn" => self.normal(words)?,
             b"f" | b"fo" => self.face(words, line.number)?,
-            b"p" => self.skipped.points += words.count() as u64,
-            b"l" => self.skipped.lines += 1,
-            b"s" => self.smoothing(words)?,
-            b"o" => self.objects.select(name_of(line)),
-            b"usemtl" => self.materials.select(name_of(line)),
-            b"mtllib" => self.geometry.libraries.extend(library_names(name_of(line))),
+            b"p" => notes.skipped.points += words.count() as u64,
+            b"l" => notes.skipped.lines += 1,
+            b"s" => self.change(Setting::Smoothing(smoothing(words)?)),
+            b"o" => self.change(Setting::Object(name_of(&line.text).into())),
+            b"usemtl" => self.change(Setting::Material(name_of(&line.text).into())),
+            b"mtllib" => {
+                let names = library_names(name_of(&line.text));
+                self.block.libraries.extend(names);
+            }
             // Groups are other names for faces; they are merged.
             b"g" => {}
-            _ => self.other(keyword)?,
+            _ => notes.skipped.statement(keyword)?,
         }
         Ok(())
+    }
+
+    fn change(&mut self, to: Setting) {
+        self.block.changes.push(Change {
+            face: self.room.face_ends.count(),
+            to,
+        });
     }
 
     fn vertex(&mut self, mut words: Words<'_>) -> Result<(), String> {
@@ -105,224 +98,142 @@ impl Reader {
         let mut count = 0;
         for word in words {
             if count < surplus.len() {
-                surplus[count] = parsed("a vertex", word)?;
+                surplus[count] = number(word).ok_or_else(|| not_a_number("a vertex", word))?;
             }
             count += 1;
         }
         let [r, g, b, _] = surplus.map(|v| v as f32);
         let color = Some([r, g, b]).filter(|c| count >= 3 && c.iter().all(|v| v.is_finite()));
         if count == 2 || count > 3 || (count == 3 && color.is_none()) {
-            self.skipped.surplus_numbers += 1;
+            self.block.notes.skipped.surplus_numbers += 1;
         }
-        self.color(color);
-        self.geometry.positions.push(DVec3::from_array(position));
+        if color.is_some() || !self.block.colors.is_empty() {
+            let place = self.room.positions.count();
+            self.block.colors.resize(place, WHITE);
+            self.block.colors.push(color.unwrap_or(WHITE));
+        }
+        self.room.positions.push(DVec3::from_array(position));
         Ok(())
     }
 
-    /// The colour of the vertex that comes next; others are white once one vertex has a colour.
-    fn color(&mut self, color: Option<[f32; 3]>) {
-        const WHITE: [f32; 3] = [1.0; 3];
-        let colors = &mut self.geometry.colors;
-        if color.is_some() {
-            colors.resize(self.geometry.positions.len(), WHITE);
-        }
-        if color.is_some() || !colors.is_empty() {
-            colors.push(color.unwrap_or(WHITE));
-        }
-    }
-
     fn uv(&mut self, mut words: Words<'_>) -> Result<(), String> {
-        let [u] = numbers::<1>("a texture coordinate", &mut words)?;
-        let v = words
-            .next()
-            .map_or(Ok(0.0), |w| parsed("a texture coordinate", w))?;
-        self.geometry
-            .uvs
-            .push(Vec2::new(u as f32, (1.0 - v) as f32));
+        const WHAT: &str = "a texture coordinate";
+        let [u] = numbers::<1>(WHAT, &mut words)?;
+        let v = words.number().unwrap_or(Ok(0.0));
+        let v = v.map_err(|word| not_a_number(WHAT, word))?;
+        let uv = Vec2::new(u as f32, (1.0 - v) as f32);
+        self.room.uvs.push(uv);
         Ok(())
     }
 
     fn normal(&mut self, mut words: Words<'_>) -> Result<(), String> {
-        let normal = numbers::<3>("a normal", &mut words)?;
-        self.geometry
-            .normals
-            .push(DVec3::from_array(normal).as_vec3());
+        let normal = DVec3::from_array(numbers::<3>("a normal", &mut words)?);
+        self.room.normals.push(normal.as_vec3());
         Ok(())
     }
 
-    fn smoothing(&mut self, mut words: Words<'_>) -> Result<(), String> {
-        self.smoothing = match words.next() {
-            None | Some(b"off") => 0,
-            Some(b"on") => 1,
-            Some(word) => std::str::from_utf8(word)
-                .ok()
-                .and_then(|w| w.parse().ok())
-                .ok_or_else(|| format!("\"{}\" is not a smoothing group", shown(word)))?,
-        };
-        Ok(())
-    }
-
-    fn face(&mut self, words: Words<'_>, line: usize) -> Result<(), String> {
-        let start = self.geometry.corners.len();
-        for word in words {
-            let corner = self.corner(word, line)?;
-            self.geometry.corners.push(corner);
+    fn face(&mut self, mut words: Words<'_>, line: usize) -> Result<(), String> {
+        self.face.clear();
+        while let Some(corner) = self.next_corner(&mut words, line)? {
+            self.face.push(corner);
         }
-        let end = self.geometry.corners.len();
-        if end - start < 3 {
-            self.skipped.small_faces += 1;
-            self.geometry.corners.truncate(start);
+        if self.face.len() < 3 {
+            self.block.notes.skipped.small_faces += 1;
             return Ok(());
         }
-        let end =
-            u32::try_from(end).map_err(|_| format!("more than {} corners of faces", u32::MAX))?;
-        self.start_run_where_needed();
-        self.geometry.face_ends.push(end);
+        for corner in &self.face {
+            self.block.has_uvs |= corner.uv.is_some();
+            self.block.has_normals |= corner.normal.is_some();
+            self.room.corners.push(corner);
+        }
+        let end = self.start.corners + self.room.corners.count();
+        self.room.face_ends.push(end as u32);
         Ok(())
+    }
+
+    fn next_corner(
+        &mut self,
+        words: &mut Words<'_>,
+        line: usize,
+    ) -> Result<Option<Corner>, String> {
+        if let Some(corner) = words.take_with(|text| self.usual_corner(text)) {
+            return Ok(Some(corner));
+        }
+        words.next().map(|word| self.corner(word, line)).transpose()
+    }
+
+    /// The corner at the start of `text`, and its bytes, where it uses what there is already.
+    fn usual_corner(&self, text: &[u8]) -> Option<(Corner, usize)> {
+        let [positions, uvs, normals] = self.counts();
+        let mut at = 0;
+        let vertex = usual_place(text, &mut at, positions)??;
+        let (mut uv, mut normal) = (None, None);
+        if text.get(at) == Some(&b'/') {
+            at += 1;
+            uv = usual_place(text, &mut at, uvs)?;
+            if text.get(at) == Some(&b'/') {
+                at += 1;
+                normal = usual_place(text, &mut at, normals)?;
+            }
+        }
+        let corner = Corner {
+            vertex: vertex.get() - 1,
+            uv,
+            normal,
+        };
+        Some((corner, at))
     }
 
     fn corner(&mut self, word: &[u8], line: usize) -> Result<Corner, String> {
         let mut parts = word.splitn(3, |&b| b == b'/');
         let mut part = || parts.next().unwrap_or(b"");
         let (vertex, uv, normal) = (part(), part(), part());
-        let positions = self.geometry.positions.len();
-        let vertex = self
+        let [positions, uvs, normals] = self.counts();
+        let notes = &mut self.block.notes;
+        let vertex = notes
             .vertices
             .resolve(vertex, positions, line)
             .map_err(|problem| message(&problem, vertex, "vertex", positions))?;
         Ok(Corner {
-            vertex,
-            uv: self.uvs.resolve(uv, self.geometry.uvs.len(), line)?,
-            normal: self
-                .normals
-                .resolve(normal, self.geometry.normals.len(), line)?,
+            vertex: vertex.get() - 1,
+            uv: notes.uvs.resolve(uv, uvs, line)?,
+            normal: notes.normals.resolve(normal, normals, line)?,
         })
     }
 
-    fn start_run_where_needed(&mut self) {
-        let part = Part {
-            object: self.objects.current(),
-            material: self.materials.current(),
-        };
-        let next = self.geometry.parts.len() as u32;
-        let id = *self.part_ids.entry(part).or_insert(next);
-        if id == next {
-            self.geometry.parts.push(part);
-        }
-        let last = self.geometry.runs.last();
-        if last.is_none_or(|run| run.part != id || run.smoothing != self.smoothing) {
-            self.geometry.runs.push(Run {
-                first_face: self.geometry.face_ends.len() as u32,
-                part: id,
-                smoothing: self.smoothing,
-            });
-        }
-    }
-
-    fn other(&mut self, keyword: &[u8]) -> Result<(), String> {
-        const MOST: usize = 20;
-        let is_word = |b: &u8| b.is_ascii_alphanumeric() || b"_-.:".contains(b);
-        if !keyword.iter().all(is_word) {
-            return Err(format!(
-                "\"{}\" is not a statement of an OBJ file",
-                shown(keyword)
-            ));
-        }
-        let mut name = shown(keyword);
-        if self.skipped.statements.len() >= MOST && !self.skipped.statements.contains_key(&name) {
-            name = "other words".to_owned();
-        }
-        *self.skipped.statements.entry(name).or_default() += 1;
-        Ok(())
-    }
-
-    fn finish(mut self) -> Result<(Geometry, Warnings), LineError> {
-        self.geometry.objects = self.objects.into_list();
-        self.geometry.materials = self.materials.into_list();
-        let geometry = &mut self.geometry;
-        let vertices = geometry.positions.len();
-        if let Some((index, line)) = self.vertices.first_above(vertices) {
-            return Err(LineError {
-                line: Some(line),
-                what: message(
-                    &BadIndex::OutOfRange,
-                    index.to_string().as_bytes(),
-                    "vertex",
-                    vertices,
-                ),
-            });
-        }
-        if vertices == 0 {
-            let what = if self.has_statements {
-                "it has no vertices"
-            } else {
-                "it is empty"
-            };
-            return Err(LineError {
-                line: None,
-                what: what.to_owned(),
-            });
-        }
-        let mut warnings = Warnings::default();
-        let [uvs, normals] = [geometry.uvs.len(), geometry.normals.len()];
-        let [late_uvs, late_normals] = geometry.corners.drop_above(uvs, normals);
-        self.uvs.warn(late_uvs, uvs, &mut warnings);
-        self.normals.warn(late_normals, normals, &mut warnings);
-        self.skipped.warn(&mut warnings);
-        Ok((self.geometry, warnings))
+    /// How many positions, texture coordinates and normals the file has so far.
+    fn counts(&self) -> [usize; 3] {
+        [
+            self.start.positions + self.room.positions.count(),
+            self.start.uvs + self.room.uvs.count(),
+            self.start.normals + self.room.normals.count(),
+        ]
     }
 }
 
-impl Skipped {
-    fn warn(self, warnings: &mut Warnings) {
-        use WarningCode::{BadAttribute, BadFace, NotTriangles, UnknownStatement};
-        let mut add = |code, message: &str, count| warnings.add_many(code, message, count);
-        add(NotTriangles, "points are not rendered", self.points);
-        add(NotTriangles, "lines are not rendered", self.lines);
-        add(
-            BadFace,
-            "faces with fewer than three corners were left out",
-            self.small_faces,
-        );
-        add(
-            BadAttribute,
-            "numbers behind a vertex that are no colour were ignored",
-            self.surplus_numbers,
-        );
-        for (name, count) in self.statements {
-            if FREE_FORM.contains(&name.as_str()) {
-                let message = format!("free-form curves and surfaces (`{name}`) are not rendered");
-                warnings.add_many(NotTriangles, message, count);
-            } else {
-                warnings.add_many(
-                    UnknownStatement,
-                    format!("`{name}` was not understood"),
-                    count,
-                );
-            }
-        }
+fn smoothing(mut words: Words<'_>) -> Result<u32, String> {
+    match words.next() {
+        None | Some(b"off") => Ok(0),
+        Some(b"on") => Ok(1),
+        Some(word) => std::str::from_utf8(word)
+            .ok()
+            .and_then(|w| w.parse().ok())
+            .ok_or_else(|| format!("\"{}\" is not a smoothing group", shown(word))),
     }
-}
-
-/// What stands behind the keyword of `line`, as one name.
-fn name_of<'l>(line: &'l Line<'_>) -> &'l [u8] {
-    let mut words = Words::of_names(&line.text);
-    words.next();
-    words.rest()
 }
 
 /// The next `N` numbers of the statement that `what` names.
 fn numbers<const N: usize>(what: &str, words: &mut Words<'_>) -> Result<[f64; N], String> {
     let mut values = [0.0; N];
     for (i, value) in values.iter_mut().enumerate() {
-        let word = words
-            .next()
+        let number = words
+            .number()
             .ok_or_else(|| format!("{what} needs {N} numbers, and has {i}"))?;
-        *value = parsed(what, word)?;
+        *value = number.map_err(|word| not_a_number(what, word))?;
     }
     Ok(values)
 }
 
-fn parsed(what: &str, word: &[u8]) -> Result<f64, String> {
-    number(word).ok_or_else(|| format!("{what} has \"{}\", which is not a number", shown(word)))
+fn not_a_number(what: &str, word: &[u8]) -> String {
+    format!("{what} has \"{}\", which is not a number", shown(word))
 }

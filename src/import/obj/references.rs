@@ -42,6 +42,15 @@ impl References {
         Ok(place)
     }
 
+    /// Adds those of a later part of the file.
+    pub fn append(&mut self, later: Self) {
+        for (place, line) in later.forward {
+            if self.forward.last().is_none_or(|&(top, _)| place > top) {
+                self.forward.push((place, line));
+            }
+        }
+    }
+
     /// The first index, with its line, that is past the end of a list of `count` elements.
     pub fn first_above(&self, count: usize) -> Option<(Index, usize)> {
         let is_above = |&&(index, _): &&(Index, usize)| index.get() as usize > count;
@@ -95,6 +104,18 @@ impl Attributes {
         }
     }
 
+    /// Adds those of a later part of the file.
+    pub fn append(&mut self, later: Self) {
+        self.references.append(later.references);
+        self.dropped += later.dropped;
+        self.first_dropped = self.first_dropped.or(later.first_dropped);
+    }
+
+    /// Whether a list of `count` elements is long enough for all of them.
+    pub fn are_within(&self, count: usize) -> bool {
+        self.references.first_above(count).is_none()
+    }
+
     /// Warns of the indices that were out of range: `late` of them showed at the end of the file,
     /// where the list had `count` elements.
     pub fn warn(&self, late: u64, count: usize, warnings: &mut Warnings) {
@@ -123,6 +144,25 @@ pub fn message(problem: &BadIndex, word: &[u8], what: &str, count: usize) -> Str
         }
         BadIndex::OutOfRange => format!("face uses {what} {word}, but there are only {count}"),
     }
+}
+
+/// The place at byte `*at` of `text` in a list of `count` elements, and `*at` moved behind it, where it
+/// is written the usual way: `Some(None)` without a digit, `None` where [`References::resolve`] must judge.
+#[inline]
+pub fn usual_place(text: &[u8], at: &mut usize, count: usize) -> Option<Option<Index>> {
+    /// Digits that cannot overflow.
+    const MOST_DIGITS: usize = 9;
+    let start = *at;
+    let mut value = 0u32;
+    while let Some(digit @ b'0'..=b'9') = text.get(*at) {
+        value = value.wrapping_mul(10).wrapping_add(u32::from(digit - b'0'));
+        *at += 1;
+    }
+    if *at == start {
+        return Some(None);
+    }
+    let place = Index::new(value).filter(|place| place.get() as usize <= count);
+    (*at - start <= MOST_DIGITS && place.is_some()).then_some(place)
 }
 
 /// The whole number that `word` is, held to the range of an `i64`.

@@ -122,7 +122,7 @@ impl Reader<'_> {
             self.complain(WarningCode::UnknownStatement, None, what);
             return;
         };
-        let mut numbers = Words::of_numbers(&line.text);
+        let mut numbers = line.words();
         numbers.next();
         let taken = material
             .value(&key, &mut numbers)
