@@ -17,7 +17,7 @@ pub fn decode(stream: &[u8], count: usize) -> Result<Vec<u32>, Fault> {
         *last = last.wrapping_add(delta);
         Ok(*last)
     };
-    let indices = (0..count).map(|_| index()).collect::<Result<_, _>>()?;
+    let indices = (0..count).map(|_| index()).collect::<Result<_, Fault>>()?;
     reader.finish()?;
     Ok(indices)
 }
