@@ -10,6 +10,7 @@ use halfshade::bvh::Builder;
 use halfshade::color::Rgb;
 use halfshade::film::{Rect, StoppedBy};
 use halfshade::light::{DistantLight, Light};
+use halfshade::material::AlphaMode;
 use halfshade::math::{UnitVec3, Vec3};
 use halfshade::prepare::prepare;
 use halfshade::render::{Event, Job, render, replay};
@@ -70,7 +71,7 @@ fn a_crop_is_a_part_of_the_whole() {
     }
 }
 
-/// Plain surfaces are lit in rows of samples; those with vertex colours, however white, one by one.
+/// Plain surfaces are lit in rows of samples; those with a mask, holes or not, one by one.
 #[test]
 fn surfaces_that_are_lit_in_rows_have_the_bits_of_those_that_are_not() {
     let mut plain = scene(1.0);
@@ -87,20 +88,19 @@ fn surfaces_that_are_lit_in_rows_have_the_bits_of_those_that_are_not() {
         samples: 1,
     };
     add_light(&mut plain, Light::Distant(sun));
-    let mut colored = plain.clone();
-    for mesh in &mut colored.meshes {
-        let white = vec![[1.0; 4]; mesh.positions().len()];
-        *mesh = mesh.clone().with_colors(white).unwrap();
+    let mut masked = plain.clone();
+    for material in &mut masked.materials {
+        material.alpha_mode = AlphaMode::Mask { cutoff: 0.5 };
     }
     for (pattern, shadow_terminator) in PATTERNS.into_iter().zip([true, false, false, true]) {
         let settings = Settings {
             shadow_terminator,
             ..settings(pattern)
         };
-        let [plain, colored] =
-            [&plain, &colored].map(|scene| picture(scene, &camera(1.0), &settings));
-        assert_eq!(bits(&plain), bits(&colored), "{pattern:?}");
-        assert_eq!(plain.rays, colored.rays, "{pattern:?}");
+        let [plain, masked] =
+            [&plain, &masked].map(|scene| picture(scene, &camera(1.0), &settings));
+        assert_eq!(bits(&plain), bits(&masked), "{pattern:?}");
+        assert_eq!(plain.rays, masked.rays, "{pattern:?}");
     }
 }
 
