@@ -124,13 +124,12 @@ pub struct CameraRays<'a> {
 
 impl CameraRays<'_> {
     /// [`Self::at`] of each place of a row, origins and directions.
-    pub fn row(&self, film: &[Vec2; ROW], lens: &[Vec2; ROW], rays: [&mut VectorRow; 2]) {
+    pub fn row(&self, film: &[Vec2; ROW], lens: &[Vec2; ROW]) -> [VectorRow; 2] {
         widely(CameraRow {
             rays: self,
             film,
             lens,
-            row: rays,
-        });
+        })
     }
 
     /// The ray through `film`, in pixels from the upper left corner of the film.
@@ -165,31 +164,20 @@ struct CameraRow<'a> {
     rays: &'a CameraRays<'a>,
     film: &'a [Vec2; ROW],
     lens: &'a [Vec2; ROW],
-    row: [&'a mut VectorRow; 2],
 }
 
 impl RowJob for CameraRow<'_> {
-    type Output = ();
+    type Output = [VectorRow; 2];
 
     #[inline(always)]
-    fn call(self) {
-        let [origins, directions] = self.row;
-        camera_row(self.rays, self.film, self.lens, origins, directions);
-    }
-}
-
-#[inline(always)]
-fn camera_row(
-    rays: &CameraRays,
-    film: &[Vec2; ROW],
-    lens: &[Vec2; ROW],
-    origins: &mut VectorRow,
-    directions: &mut VectorRow,
-) {
-    for i in 0..ROW {
-        let ray = rays.at(film[i], lens[i]);
-        origins.set(i, ray.origin);
-        directions.set(i, ray.direction);
+    fn call(self) -> [VectorRow; 2] {
+        let [mut origins, mut directions] = [VectorRow::ZERO; 2];
+        for i in 0..ROW {
+            let ray = self.rays.at(self.film[i], self.lens[i]);
+            origins.set(i, ray.origin);
+            directions.set(i, ray.direction);
+        }
+        [origins, directions]
     }
 }
 

@@ -13,6 +13,7 @@ pub struct Moments {
 
 impl Moments {
     /// Adds a sample; `false` where it is not finite, and all stays as it was.
+    #[inline]
     fn add_sample(&mut self, value: Rgb) -> bool {
         if !value.is_finite() {
             return false;
@@ -29,18 +30,21 @@ impl Moments {
     }
 
     /// Their mean by channel; 0 where there are none.
+    #[inline]
     pub fn mean(&self) -> [f64; 3] {
         self.mean
     }
 
     /// Variance of a single sample by channel; 0 where there are fewer than two. Over the count it
     /// overstates the variance of the mean of a stratified pattern, often several times over.
+    #[inline]
     pub fn sample_variance(&self) -> [f64; 3] {
         let degrees = self.count.saturating_sub(1).max(1) as f64;
         self.deviation.map(|d| d / degrees)
     }
 
     /// Their number.
+    #[inline]
     pub fn count(&self) -> u64 {
         self.count
     }
@@ -59,21 +63,25 @@ pub struct Pixel {
 
 impl Pixel {
     /// Adds a sample to a half, 0 or 1; `false` where it is not finite, and the pixel stays as it was.
+    #[inline]
     pub fn add_sample(&mut self, half: usize, value: Rgb) -> bool {
         self.halves[half].add_sample(value)
     }
 
     /// The two halves.
+    #[inline]
     pub fn halves(&self) -> &[Moments; 2] {
         &self.halves
     }
 
     /// Whether both halves have samples, so that [`Pixel::squared_error`] means something.
+    #[inline]
     pub fn has_error(&self) -> bool {
         self.halves.iter().all(|half| half.count > 0)
     }
 
     /// Its value by channel; black where there are no samples.
+    #[inline]
     pub fn value(&self) -> [f64; 3] {
         let [a, b] = &self.halves;
         match (a.count, b.count) {
@@ -102,6 +110,7 @@ impl Pixel {
 
     /// The squared error of its value by channel, as the halves tell it: right on average, though by itself
     /// it has one degree of freedom. 0 where one half is empty.
+    #[inline]
     pub fn squared_error(&self) -> [f64; 3] {
         if !self.has_error() {
             return [0.0; 3];

@@ -32,18 +32,12 @@ impl DiskLight {
     }
 
     /// [`Self::sample`] of each point of a row.
-    pub(super) fn sample_row(
-        &self,
-        points: &VectorRow,
-        u: &[Vec2; ROW],
-        samples: &mut LightSampleRow,
-    ) {
+    pub(super) fn sample_row(&self, points: &VectorRow, u: &[Vec2; ROW]) -> LightSampleRow {
         widely(SampleRow {
             light: self,
             points,
             u,
-            samples,
-        });
+        })
     }
 
     #[inline(always)]
@@ -101,34 +95,19 @@ struct SampleRow<'a> {
     light: &'a DiskLight,
     points: &'a VectorRow,
     u: &'a [Vec2; ROW],
-    samples: &'a mut LightSampleRow,
 }
 
 impl RowJob for SampleRow<'_> {
-    type Output = ();
+    type Output = LightSampleRow;
 
     #[inline(always)]
-    fn call(self) {
-        let Self {
-            light,
-            points,
-            u,
-            samples,
-        } = self;
-        sample_row(light, points, u, samples);
-    }
-}
-
-// A function with references of its own: of those the compiler knows that they do not overlap.
-#[inline(always)]
-fn sample_row(
-    light: &DiskLight,
-    points: &VectorRow,
-    u: &[Vec2; ROW],
-    samples: &mut LightSampleRow,
-) {
-    let normal = light.exact_normal();
-    for i in 0..ROW {
-        samples.set(i, light.sample_across(normal, points.get(i), u[i]));
+    fn call(self) -> LightSampleRow {
+        let Self { light, points, u } = self;
+        let normal = light.exact_normal();
+        let mut samples = LightSampleRow::NONE;
+        for i in 0..ROW {
+            samples.set(i, light.sample_across(normal, points.get(i), u[i]));
+        }
+        samples
     }
 }

@@ -85,11 +85,11 @@ impl Light {
         count: usize,
         samples: &mut LightSampleRow,
     ) {
-        samples.has_direction = matches!(self, Light::Distant(_));
         if let Light::Disk(light) = self {
-            light.sample_row(points, u, samples);
+            *samples = light.sample_row(points, u);
             return;
         }
+        samples.has_direction = matches!(self, Light::Distant(_));
         for i in 0..count {
             samples.set(i, self.sample(points.get(i), u[i]));
         }

@@ -8,7 +8,8 @@ use glam::Vec3;
 use pulp::Arch;
 
 /// Something to be compiled for each instruction set: its `call` must be `#[inline(always)]`, and so must be
-/// what that calls.
+/// what that calls. It writes to rows of its own, which it returns: the compiler knows that nothing else
+/// reads them meanwhile.
 pub use pulp::NullaryFnOnce as RowJob;
 
 /// The most samples that are computed together.

@@ -49,6 +49,17 @@ struct SeenRow {
     wo: VectorRow,
 }
 
+impl SeenRow {
+    const NOWHERE: Self = Self {
+        point: VectorRow::ZERO,
+        shadow_origin: VectorRow::ZERO,
+        is_bulging: [false; ROW],
+        geometric_normal: VectorRow::ZERO,
+        shading_normal: VectorRow::ZERO,
+        wo: VectorRow::ZERO,
+    };
+}
+
 impl PlainRow {
     /// Without hits.
     pub const EMPTY: Self = Self {
@@ -61,14 +72,7 @@ impl PlainRow {
         normals: [VectorRow::ZERO; 3],
         has_normals: [false; ROW],
         is_smooth: false,
-        seen: SeenRow {
-            point: VectorRow::ZERO,
-            shadow_origin: VectorRow::ZERO,
-            is_bulging: [false; ROW],
-            geometric_normal: VectorRow::ZERO,
-            shading_normal: VectorRow::ZERO,
-            wo: VectorRow::ZERO,
-        },
+        seen: SeenRow::NOWHERE,
     };
 
     /// Takes all hits out.
@@ -110,11 +114,11 @@ impl PlainRow {
     /// Computes what shading reads at all hits; with `is_bulging` shadows start on the surface that vertex normals
     /// describe.
     pub fn locate(&mut self, is_bulging: bool) {
-        widely(Locate(self, is_bulging));
+        self.seen = widely(Locate(self, is_bulging));
     }
 
     #[inline(always)]
-    fn locate_one<const IS_SMOOTH: bool>(&mut self, i: usize, is_bulging: bool) {
+    fn locate_one<const IS_SMOOTH: bool>(&self, i: usize, is_bulging: bool, seen: &mut SeenRow) {
         let corners: [DVec3; 3] = [
             self.corners[0].get(i).as_dvec3(),
             self.corners[1].get(i).as_dvec3(),
@@ -141,7 +145,6 @@ impl PlainRow {
             };
         }
         let at = facet.interaction(smooth, height, wo).lit_side();
-        let seen = &mut self.seen;
         seen.point.set(i, at.point);
         seen.shadow_origin.set(i, at.shadow_origin);
         seen.is_bulging[i] = at.is_bulging;
@@ -151,26 +154,26 @@ impl PlainRow {
     }
 }
 
-struct Locate<'a>(&'a mut PlainRow, bool);
+struct Locate<'a>(&'a PlainRow, bool);
 
 impl RowJob for Locate<'_> {
-    type Output = ();
+    type Output = SeenRow;
 
     #[inline(always)]
-    fn call(self) {
+    fn call(self) -> SeenRow {
+        let Self(row, is_bulging) = self;
+        let mut seen = SeenRow::NOWHERE;
         // Past the last hit there is what was there before: no harm in computing it.
-        if self.0.is_smooth {
-            locate_all::<true>(self.0, self.1);
+        if row.is_smooth {
+            for i in 0..ROW {
+                row.locate_one::<true>(i, is_bulging, &mut seen);
+            }
         } else {
-            locate_all::<false>(self.0, self.1);
+            for i in 0..ROW {
+                row.locate_one::<false>(i, is_bulging, &mut seen);
+            }
         }
-    }
-}
-
-#[inline(always)]
-fn locate_all<const IS_SMOOTH: bool>(row: &mut PlainRow, is_bulging: bool) {
-    for i in 0..ROW {
-        row.locate_one::<IS_SMOOTH>(i, is_bulging);
+        seen
     }
 }
 
@@ -178,9 +181,9 @@ impl PreparedScene<'_> {
     /// Adds `hit` of `ray` to `row` where the surface is plain; whether it is. There is room for [`ROW`].
     pub fn add_plain(&self, row: &mut PlainRow, ray: &Ray, hit: &Hit) -> bool {
         let traced = &self.geometry.traced[hit.instance as usize];
-        let at = self.locate(hit);
+        let (instance, triangle) = self.triangle(hit);
         let is_flat = matches!(traced.placing, Placing::Flattened(_));
-        if !is_flat || self.plain[at.instance_number as usize].is_none() {
+        if !is_flat || self.plain[instance as usize].is_none() {
             return false;
         }
         let i = row.count;
@@ -193,9 +196,10 @@ impl PreparedScene<'_> {
         row.weights[0][i] = hit.u;
         row.weights[1][i] = hit.v;
         row.back.set(i, -ray.direction);
-        row.orientation[i] = self.orientation(&at);
-        row.instances[i] = at.instance_number;
-        let normals = self.vertex_normals(&at);
+        row.orientation[i] = self.orientation[instance as usize];
+        row.instances[i] = instance;
+        let mesh = (self.scene).mesh(self.scene.instances[instance as usize].mesh);
+        let normals = self.normals_of(instance, mesh, || mesh.indices()[triangle as usize]);
         row.has_normals[i] = normals.is_some();
         if let Some(normals) = normals {
             row.is_smooth = true;

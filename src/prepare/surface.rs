@@ -125,7 +125,7 @@ impl Surface<'_> {
 /// A hit traced back to the scene's own triangle.
 pub(super) struct Located<'a> {
     instance: &'a Instance,
-    pub instance_number: u32,
+    instance_number: u32,
     pub mesh: &'a Mesh,
     pub corners: [u32; 3],
     /// Weights of the corners; they add up to 1.
@@ -150,16 +150,20 @@ fn mix4(a: [f32; 4], wa: f32, b: [f32; 4], wb: f32, c: [f32; 4], wc: f32) -> [f3
 }
 
 impl<'a> PreparedScene<'a> {
-    pub(super) fn locate(&self, hit: &Hit) -> Located<'a> {
-        let traced = &self.geometry.traced[hit.instance as usize];
-        let (instance_number, triangle) = match &traced.placing {
+    /// The number of the scene's instance that was hit, and of its mesh's triangle.
+    pub(super) fn triangle(&self, hit: &Hit) -> (u32, u32) {
+        match &self.geometry.traced[hit.instance as usize].placing {
             Placing::Flattened(parts) => {
                 let part = parts.partition_point(|p| p.first_triangle <= hit.triangle) - 1;
                 let part = parts[part];
                 (part.instance, hit.triangle - part.first_triangle)
             }
             Placing::Instanced { instance, .. } => (*instance, hit.triangle),
-        };
+        }
+    }
+
+    pub(super) fn locate(&self, hit: &Hit) -> Located<'a> {
+        let (instance_number, triangle) = self.triangle(hit);
         let instance = &self.scene.instances[instance_number as usize];
         let mesh = self.scene.mesh(instance.mesh);
         Located {
@@ -191,7 +195,7 @@ impl<'a> PreparedScene<'a> {
 
     /// The number of the instance of the scene that `hit` is on.
     pub fn instance(&self, hit: &Hit) -> u32 {
-        self.locate(hit).instance_number
+        self.triangle(hit).0
     }
 
     pub(super) fn material(&self, at: &Located) -> &'a Material {
@@ -312,10 +316,20 @@ impl<'a> PreparedScene<'a> {
     }
 
     /// The vertex normals of the triangle's corners, pointing outwards, of any length; `None` where the mesh has none.
-    pub(super) fn vertex_normals(&self, at: &Located) -> Option<[Vec3; 3]> {
-        let normals = at.mesh.normals();
-        let matrix = &self.normal_matrices[at.instance_number as usize];
-        (!normals.is_empty()).then(|| at.corners.map(|i| *matrix * normals[i as usize]))
+    fn vertex_normals(&self, at: &Located) -> Option<[Vec3; 3]> {
+        self.normals_of(at.instance_number, at.mesh, || at.corners)
+    }
+
+    /// See [`Self::vertex_normals`].
+    pub(super) fn normals_of(
+        &self,
+        instance: u32,
+        mesh: &Mesh,
+        corners: impl FnOnce() -> [u32; 3],
+    ) -> Option<[Vec3; 3]> {
+        let normals = mesh.normals();
+        let matrix = &self.normal_matrices[instance as usize];
+        (!normals.is_empty()).then(|| corners().map(|i| *matrix * normals[i as usize]))
     }
 
     /// `normal` bent by a normal map.

@@ -16,12 +16,11 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::tile::{Halves, Tile};
-use crate::film::{Moments, Pixel, Rect, relative_weights};
+use super::difficulty::Difficulty;
+use super::tile::Tile;
+use crate::film::Rect;
 use crate::sampling::Pattern;
 
-/// What a half has seen in its pixel counts like this many samples less than the neighbours' mean.
-const NEIGHBOURHOOD: f32 = 4.0;
 /// As many pixels of the whole film stand beside those of a tile.
 const FILM: f64 = 8.0;
 /// Every pixel keeps this share of the mean number of samples: what no sample has met yet, none has asked for.
@@ -87,6 +86,55 @@ impl Class {
 /// In the order of their shares.
 type Classes = Vec<(Share, Class)>;
 
+/// What the halves of a tile's pixels are to get.
+struct Allotted {
+    shares: Vec<Share>,
+    /// See [`Class::weight`].
+    weights: Vec<f64>,
+    /// See [`Class::cost`].
+    cost: f64,
+}
+
+/// Parts of the film that are counted by themselves.
+const PARTS: usize = 16;
+
+/// The classes of some tiles, of which those of one score come in any order.
+fn classes_of(tiles: &[Allotted]) -> Classes {
+    let scores = || tiles.iter().flat_map(|tile| &tile.shares).map(|s| s.score);
+    let (least, most) = (scores().min().unwrap_or(0), scores().max().unwrap_or(0));
+    let span = usize::from(most.abs_diff(least)) + 1;
+    // There are few different numbers of samples, as a rule.
+    let mut by_taken = BTreeMap::<u32, Vec<Class>>::new();
+    for tile in tiles {
+        for (share, weight) in tile.shares.iter().zip(&tile.weights) {
+            let classes = by_taken.entry(share.taken);
+            let classes = classes.or_insert_with(|| vec![Class::default(); span]);
+            classes[usize::from(share.score.abs_diff(least))].add(&Class {
+                count: 1,
+                cost: tile.cost,
+                weight: *weight,
+            });
+        }
+    }
+    let of_taken = |(taken, classes): (u32, Vec<Class>)| {
+        let shares = (least..=most).map(move |score| Share { score, taken });
+        shares.zip(classes).filter(|(_, class)| class.count > 0)
+    };
+    by_taken.into_iter().flat_map(of_taken).collect()
+}
+
+/// Classes of one share become one.
+fn merged(sorted: impl IntoIterator<Item = (Share, Class)>) -> Classes {
+    let mut classes = Classes::new();
+    for (share, class) in sorted {
+        match classes.last_mut() {
+            Some((kept_share, kept)) if *kept_share == share => kept.add(&class),
+            _ => classes.push((share, class)),
+        }
+    }
+    classes
+}
+
 /// How many samples each half of each pixel is to get.
 pub(super) struct Allotment {
     pattern: Pattern,
@@ -124,15 +172,17 @@ impl Allotment {
             let sum = |f: fn(&Measured) -> f64| measured.iter().map(f).sum::<f64>();
             sum(|m| m.error) / sum(|m| m.model).max(f64::MIN_POSITIVE)
         };
-        let (shares, by_tile): (Vec<_>, Vec<Classes>) = measured
+        let allotted: Vec<_> = measured
             .into_par_iter()
-            .map(|measured| measured.shares(film_factor, exponent))
-            .unzip();
-        let mut classes = BTreeMap::<Share, Class>::new();
-        for (share, class) in by_tile.iter().flatten() {
-            classes.entry(*share).or_default().add(class);
-        }
-        let classes = classes.into_iter().collect();
+            .map(|measured| measured.allotted(film_factor, exponent))
+            .collect();
+        // Parts do not depend on the number of threads: sums have an order.
+        let part = allotted.len().div_ceil(PARTS).max(1);
+        let by_part: Vec<_> = allotted.par_chunks(part).map(classes_of).collect();
+        let mut classes = by_part.concat();
+        classes.sort_by_key(|(share, _)| *share);
+        let classes = merged(classes);
+        let shares = allotted.into_iter().map(|tile| tile.shares).collect();
         Self {
             pattern,
             exponent,
@@ -228,112 +278,6 @@ impl Allotment {
     }
 }
 
-/// How varied the samples of each half of each pixel are, over what the metric divides by.
-struct Difficulty {
-    film: Rect,
-    halves: Vec<[f32; 2]>,
-}
-
-impl Difficulty {
-    fn of(film: Rect, tiles: &[Tile]) -> Self {
-        let mut seen = vec![[Seen::default(); 2]; film.area() as usize];
-        for tile in tiles {
-            for (pixel, place) in tile.pixels.iter().zip(tile.rect().pixels()) {
-                let (x, y) = (place.x - film.x, place.y - film.y);
-                seen[(y * film.width + x) as usize] = Seen::of(pixel);
-            }
-        }
-        let rows = (0..film.height).into_par_iter();
-        let halves = rows.flat_map_iter(|y| {
-            let seen = &seen;
-            (0..film.width).map(move |x| {
-                let own = &seen[(y * film.width + x) as usize];
-                [0, 1].map(|half| match own[half].variation {
-                    Some(variation) => variation,
-                    None => own[half].weights * spread(film, seen, half, x, y),
-                })
-            })
-        });
-        Self {
-            film,
-            halves: halves.collect(),
-        }
-    }
-
-    /// For each half of the pixel in column `x` and row `y`: what the other half, which has `taken`
-    /// samples, and the pixels around say.
-    fn for_halves(&self, x: u32, y: u32, taken: Halves) -> [f32; 2] {
-        let around = self.around(x, y);
-        let own = self.halves[(y * self.film.width + x) as usize];
-        [1, 0].map(|other: usize| {
-            let count = taken[other] as f32;
-            (count * own[other] + NEIGHBOURHOOD * around) / (count + NEIGHBOURHOOD)
-        })
-    }
-
-    /// The mean over both halves of the pixels around.
-    fn around(&self, x: u32, y: u32) -> f32 {
-        let (mut sum, mut count) = (0.0, 0.0);
-        for (column, row) in neighbourhood(self.film, x, y) {
-            if (column, row) != (x, y) {
-                let [a, b] = self.halves[(row * self.film.width + column) as usize];
-                sum += a + b;
-                count += 2.0;
-            }
-        }
-        if count > 0.0 { sum / count } else { 0.0 }
-    }
-}
-
-/// What a half of a pixel has seen.
-#[derive(Clone, Copy, Default)]
-struct Seen {
-    mean: [f32; 3],
-    /// What the metric multiplies squares by, the mean of the channels.
-    weights: f32,
-    /// The variance of its samples in units of the metric, summed over the channels; `None` where there is but one.
-    variation: Option<f32>,
-}
-
-impl Seen {
-    fn of(pixel: &Pixel) -> [Self; 2] {
-        let of = |half: &Moments| {
-            let weights = relative_weights(half.mean());
-            let variance = half.sample_variance();
-            let weighted = variance.iter().zip(weights).map(|(v, w)| v * w);
-            Self {
-                mean: half.mean().map(|c| c as f32),
-                weights: (weights.iter().sum::<f64>() / 3.0) as f32,
-                variation: (half.count() > 1).then(|| weighted.sum::<f64>() as f32),
-            }
-        };
-        [of(&pixel.halves()[0]), of(&pixel.halves()[1])]
-    }
-}
-
-/// The pixel in column `x` and row `y`, and those around it.
-fn neighbourhood(film: Rect, x: u32, y: u32) -> impl Iterator<Item = (u32, u32)> {
-    let columns = x.saturating_sub(1)..(x + 2).min(film.width);
-    let rows = y.saturating_sub(1)..(y + 2).min(film.height);
-    rows.flat_map(move |row| columns.clone().map(move |column| (column, row)))
-}
-
-/// The variance of what one half has seen in a neighbourhood, summed over the channels: all there is
-/// to go by where each pixel has a single sample.
-fn spread(film: Rect, seen: &[[Seen; 2]], half: usize, x: u32, y: u32) -> f32 {
-    let (mut sums, mut squares, mut count) = ([0.0; 3], 0.0, 0.0);
-    for (column, row) in neighbourhood(film, x, y) {
-        let mean = seen[(row * film.width + column) as usize][half].mean;
-        for (sum, c) in sums.iter_mut().zip(mean) {
-            *sum += c;
-            squares += c * c;
-        }
-        count += 1.0;
-    }
-    let of_means: f32 = sums.iter().map(|sum| sum * sum).sum::<f32>() / count;
-    ((squares - of_means) / f32::max(count - 1.0, 1.0)).max(0.0)
-}
-
 /// What a tile's samples say before the tile is compared with the film.
 struct Measured<'a> {
     tile: &'a Tile,
@@ -349,12 +293,11 @@ struct Measured<'a> {
 
 impl<'a> Measured<'a> {
     fn of(tile: &'a Tile, difficulty: &Difficulty, exponent: f64) -> Self {
-        let film = difficulty.film;
         let (mut error, mut model, mut squares) = (0.0, 0.0, 0.0);
         let mut of_tile = Vec::with_capacity(tile.pixels.len());
         for (i, place) in tile.rect().pixels().enumerate() {
             let taken = tile.taken[i];
-            let of = difficulty.for_halves(place.x - film.x, place.y - film.y, taken);
+            let of = difficulty.for_halves(place.x, place.y, taken);
             let expected: f64 = of
                 .iter()
                 .zip(taken)
@@ -379,7 +322,7 @@ impl<'a> Measured<'a> {
     }
 
     /// Its allotment; `film_factor` is `error` over `model` for the whole film.
-    fn shares(self, film_factor: f64, exponent: f64) -> (Vec<Share>, Classes) {
+    fn allotted(self, film_factor: f64, exponent: f64) -> Allotted {
         let factor = if self.model > 0.0 {
             let own = self.error / self.model;
             (self.pixels * own + FILM * film_factor) / (self.pixels + FILM)
@@ -396,33 +339,23 @@ impl<'a> Measured<'a> {
         let cost = (self.tile.rays.total() as f64 / taken(self.tile).max(1.0)).max(1.0);
         let power = 1.0 / (1.0 + exponent);
         let mut shares = Vec::with_capacity(2 * self.difficulty.len());
-        let mut classes = Vec::with_capacity(2 * self.difficulty.len());
+        let mut weights = Vec::with_capacity(2 * self.difficulty.len());
         for (taken, difficulty) in self.tile.taken.iter().zip(&self.difficulty) {
             for half in 0..2 {
                 let weight = 0.25 * factor * f64::from(difficulty[half]);
                 let score = (weight.max(LEAST_WEIGHT) / cost).log2() * power;
-                let share = Share {
+                shares.push(Share {
                     score: (STEPS_PER_OCTAVE * score).round() as i16,
                     taken: taken[half],
-                };
-                shares.push(share);
-                let class = Class {
-                    count: 1,
-                    cost,
-                    weight,
-                };
-                classes.push((share, class));
+                });
+                weights.push(weight);
             }
         }
-        classes.sort_by_key(|(share, _)| *share);
-        classes.dedup_by(|(share, class), (kept_share, kept)| {
-            let is_same = share == kept_share;
-            if is_same {
-                kept.add(class);
-            }
-            is_same
-        });
-        (shares, classes)
+        Allotted {
+            shares,
+            weights,
+            cost,
+        }
     }
 }
 

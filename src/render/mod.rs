@@ -9,6 +9,7 @@ mod allot;
 mod backdrop;
 mod course;
 mod decay;
+mod difficulty;
 mod forecast;
 mod replay;
 pub mod stability;

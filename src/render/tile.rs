@@ -9,7 +9,7 @@ use crate::film::{CutOff, ErrorSums, Film, Pixel, RayCounts, Rect, RejectedSampl
 use crate::integrate::{
     Account, Aov, CameraSample, FirstSurface, Integrator, RayLog, Sight, Source,
 };
-use crate::math::{ROW, Ray, UVec2, Vec2, VectorRow, morton_pixel};
+use crate::math::{ROW, Ray, UVec2, Vec2, morton_pixel};
 use crate::sampling::Sampler;
 
 /// Pixels along the edge of a tile.
@@ -283,8 +283,7 @@ fn camera_samples(
             *lens = sampler.lens();
         }
     }
-    let (mut origins, mut directions) = (VectorRow::ZERO, VectorRow::ZERO);
-    rays.row(&film, &lens, [&mut origins, &mut directions]);
+    let [origins, directions] = rays.row(&film, &lens);
     for (i, sampler) in samplers.iter().enumerate() {
         samples.push(CameraSample {
             ray: Ray::new(origins.get(i), directions.get(i)),

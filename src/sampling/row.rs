@@ -57,12 +57,11 @@ fn sobol_row(
         keys[i] = key;
         numbers[i] = number;
     }
-    widely(Points {
+    *points = widely(Points {
         set,
         pair,
         keys: &keys,
         numbers: &numbers,
-        points,
     });
 }
 
@@ -71,30 +70,28 @@ struct Points<'a> {
     pair: Pair,
     keys: &'a [Key; ROW],
     numbers: &'a [u64; ROW],
-    points: &'a mut [Vec2; ROW],
 }
 
 impl RowJob for Points<'_> {
-    type Output = ();
+    type Output = [Vec2; ROW];
 
     #[inline(always)]
-    fn call(self) {
+    fn call(self) -> [Vec2; ROW] {
         match self.pair {
-            Pair::First => all(self.set, Pair::First, self.keys, self.numbers, self.points),
-            Pair::Second => all(self.set, Pair::Second, self.keys, self.numbers, self.points),
+            Pair::First => self.all(Pair::First),
+            Pair::Second => self.all(Pair::Second),
         }
     }
 }
 
-#[inline(always)]
-fn all(
-    set: DimensionSet,
-    pair: Pair,
-    keys: &[Key; ROW],
-    numbers: &[u64; ROW],
-    points: &mut [Vec2; ROW],
-) {
-    for i in 0..ROW {
-        points[i] = sobol::point_of(keys[i].with(set.0), numbers[i], pair);
+impl Points<'_> {
+    #[inline(always)]
+    fn all(&self, pair: Pair) -> [Vec2; ROW] {
+        let mut points = [Vec2::ZERO; ROW];
+        for i in 0..ROW {
+            let key = self.keys[i].with(self.set.0);
+            points[i] = sobol::point_of(key, self.numbers[i], pair);
+        }
+        points
     }
 }

@@ -77,24 +77,20 @@ impl WayRow {
 }
 
 struct Find<'a> {
-    ways: &'a mut WayRow,
     surfaces: &'a PlainRow,
     samples: &'a LightSampleRow,
 }
 
 impl RowJob for Find<'_> {
-    type Output = ();
+    type Output = WayRow;
 
     #[inline(always)]
-    fn call(self) {
-        find_all(self.ways, self.surfaces, self.samples);
-    }
-}
-
-#[inline(always)]
-fn find_all(ways: &mut WayRow, surfaces: &PlainRow, samples: &LightSampleRow) {
-    for i in 0..ROW {
-        ways.find(i, surfaces, samples);
+    fn call(self) -> WayRow {
+        let mut ways = WayRow::NONE;
+        for i in 0..ROW {
+            ways.find(i, self.surfaces, self.samples);
+        }
+        ways
     }
 }
 
@@ -196,11 +192,7 @@ impl LightRow {
         if count < FEW {
             (0..count).for_each(|i| ways.find(i, surfaces, samples));
         } else {
-            widely(Find {
-                ways,
-                surfaces,
-                samples,
-            });
+            *ways = widely(Find { surfaces, samples });
         }
     }
 }

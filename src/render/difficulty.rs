@@ -1,0 +1,190 @@
+//! How varied the samples of each half of each pixel are: what says where more of them are needed.
+
+use rayon::prelude::*;
+
+use super::tile::{Halves, TILE, Tile};
+use crate::film::{Moments, Pixel, Rect, relative_weights};
+
+/// What a half has seen in its pixel counts like this many samples less than the neighbours' mean.
+const NEIGHBOURHOOD: f32 = 4.0;
+
+/// How varied the samples of each half of each pixel are, over what the metric divides by.
+pub(super) struct Difficulty {
+    film: Rect,
+    /// By pixel, row by row, as all that follow.
+    halves: Vec<[f32; 2]>,
+    /// The mean over both halves of the pixels around.
+    around: Vec<f32>,
+}
+
+/// What a half of a pixel has seen.
+#[derive(Clone, Copy, Default)]
+struct Seen {
+    mean: [f32; 3],
+    /// What the metric multiplies squares by, the mean of the channels.
+    weights: f32,
+    /// The variance of its samples in units of the metric, summed over the channels; `None` where there is but one.
+    variation: Option<f32>,
+}
+
+impl Difficulty {
+    /// Of the pixels of `tiles`, which come row by row and fill `film`.
+    pub fn of(film: Rect, tiles: &[Tile]) -> Self {
+        let mut seen = vec![[Seen::default(); 2]; film.area() as usize];
+        let width = film.width as usize;
+        let bands = seen.par_chunks_mut(width * TILE as usize);
+        let rows = tiles.par_chunks(film.width.div_ceil(TILE) as usize);
+        bands.zip(rows).for_each(|(band, tiles)| {
+            for tile in tiles {
+                let first = tile.rect();
+                for (pixel, place) in tile.pixels.iter().zip(first.pixels()) {
+                    let (x, y) = (place.x - film.x, place.y - first.y);
+                    band[y as usize * width + x as usize] = Seen::of(pixel);
+                }
+            }
+        });
+        let halves = variations(film, &seen);
+        let both = |i: usize| halves[i][0] + halves[i][1];
+        let around = by_nine(
+            film,
+            |i| [both(i)],
+            |i, count, [sum]| {
+                let others = 2.0 * (count - 1.0);
+                if others > 0.0 {
+                    (sum - both(i)).max(0.0) / others
+                } else {
+                    0.0
+                }
+            },
+        );
+        Self {
+            film,
+            around,
+            halves,
+        }
+    }
+
+    /// For each half of the pixel in column `x` and row `y` of the film: what the other half, which has `taken`
+    /// samples, and the pixels around say.
+    pub fn for_halves(&self, x: u32, y: u32, taken: Halves) -> [f32; 2] {
+        let i = ((y - self.film.y) * self.film.width + x - self.film.x) as usize;
+        let (own, around) = (self.halves[i], self.around[i]);
+        [1, 0].map(|other: usize| {
+            let count = taken[other] as f32;
+            (count * own[other] + NEIGHBOURHOOD * around) / (count + NEIGHBOURHOOD)
+        })
+    }
+}
+
+impl Seen {
+    fn of(pixel: &Pixel) -> [Self; 2] {
+        let of = |half: &Moments| {
+            let weights = relative_weights(half.mean());
+            let variance = half.sample_variance();
+            let weighted = variance.iter().zip(weights).map(|(v, w)| v * w);
+            Self {
+                mean: half.mean().map(|c| c as f32),
+                weights: (weights.iter().sum::<f64>() / 3.0) as f32,
+                variation: (half.count() > 1).then(|| weighted.sum::<f64>() as f32),
+            }
+        };
+        [of(&pixel.halves()[0]), of(&pixel.halves()[1])]
+    }
+}
+
+/// How varied the samples of each half are; where it has but one, those of the pixels around.
+fn variations(film: Rect, seen: &[[Seen; 2]]) -> Vec<[f32; 2]> {
+    let is_known = |halves: &[Seen; 2]| halves.iter().all(|half| half.variation.is_some());
+    if seen.par_iter().all(is_known) {
+        let known =
+            |halves: &[Seen; 2]| halves.each_ref().map(|half| half.variation.unwrap_or(0.0));
+        return seen.par_iter().map(known).collect();
+    }
+    let moments = |i: usize| {
+        let [a, b] = seen[i].each_ref().map(|half| {
+            let [r, g, b] = half.mean;
+            [r, g, b, r * r + g * g + b * b]
+        });
+        [a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3]]
+    };
+    by_nine(film, moments, |i, count, sums: [f32; 8]| {
+        [0, 1].map(|half| {
+            let [r, g, b, squares] = [0, 1, 2, 3].map(|k| sums[4 * half + k]);
+            let of_means = (r * r + g * g + b * b) / count;
+            let spread = ((squares - of_means) / f32::max(count - 1.0, 1.0)).max(0.0);
+            let half = &seen[i][half];
+            half.variation.unwrap_or(half.weights * spread)
+        })
+    })
+}
+
+/// What `of` makes, for each pixel, of its number, of how many there are of it and the eight pixels around, and of the sum
+/// of the `value`s of these.
+fn by_nine<const N: usize, T: Clone + Default + Send>(
+    film: Rect,
+    value: impl Fn(usize) -> [f32; N] + Sync,
+    of: impl Fn(usize, f32, [f32; N]) -> T + Sync,
+) -> Vec<T> {
+    let (width, height) = (film.width as usize, film.height as usize);
+    let mut all = vec![T::default(); width * height];
+    let rows = all.par_chunks_mut(width.max(1)).enumerate();
+    rows.for_each_init(
+        || vec![[0.0; N]; width],
+        |columns, (y, row)| {
+            let others = y.saturating_sub(1)..(y + 2).min(height);
+            columns.fill([0.0; N]);
+            for other in others.clone() {
+                for (x, sum) in columns.iter_mut().enumerate() {
+                    add(sum, &value(other * width + x));
+                }
+            }
+            for (x, result) in row.iter_mut().enumerate() {
+                let columns = &columns[x.saturating_sub(1)..(x + 2).min(width)];
+                let mut sum = [0.0; N];
+                for column in columns {
+                    add(&mut sum, column);
+                }
+                let count = (columns.len() * others.len()) as f32;
+                *result = of(y * width + x, count, sum);
+            }
+        },
+    );
+    all
+}
+
+fn add<const N: usize>(sum: &mut [f32; N], values: &[f32; N]) {
+    for (sum, value) in sum.iter_mut().zip(values) {
+        *sum += value;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_are_those_of_the_pixels_around() {
+        for (width, height) in [(1, 1), (1, 4), (5, 1), (4, 3)] {
+            let film = Rect {
+                x: 7,
+                y: 9,
+                width,
+                height,
+            };
+            let value = |x: u32, y: u32| (1 + x + 10 * y) as f32;
+            let at = |i: usize| [value(i as u32 % width, i as u32 / width)];
+            let sums = by_nine(film, at, |_, count, [sum]| [count, sum]);
+            for (i, got) in sums.iter().enumerate() {
+                let (x, y) = (i as u32 % width, i as u32 / width);
+                let (mut expected, mut count) = (0.0, 0.0);
+                for row in y.saturating_sub(1)..(y + 2).min(height) {
+                    for column in x.saturating_sub(1)..(x + 2).min(width) {
+                        expected += value(column, row);
+                        count += 1.0;
+                    }
+                }
+                assert_eq!(*got, [count, expected], "{width} × {height}, {x}, {y}");
+            }
+        }
+    }
+}
