@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::primitive::corners;
 use crate::bvh::layout::{Block, ChildRef, Node};
+use crate::bvh::simd::prefer_large_pages;
 use crate::math::Vec3;
 
 /// Nodes and leaves of a subtree, numbered from 0 in depth-first order.
@@ -66,6 +67,11 @@ impl<const W: usize> Fragment<W> {
             }
             block
         };
-        ranges.par_iter().with_min_len(64).map(make_block).collect()
+        let mut blocks = Vec::with_capacity(ranges.len());
+        // Now, since pages that are written already have to be copied.
+        prefer_large_pages(blocks.spare_capacity_mut());
+        let work = ranges.par_iter().with_min_len(64).map(make_block);
+        work.collect_into_vec(&mut blocks);
+        blocks
     }
 }
