@@ -4,7 +4,6 @@ use rayon::prelude::*;
 
 use super::primitive::corners;
 use crate::bvh::layout::{Block, ChildRef, Node};
-use crate::bvh::simd::prefer_large_pages;
 use crate::math::Vec3;
 
 /// Nodes and leaves of a subtree, numbered from 0 in depth-first order.
@@ -67,11 +66,6 @@ impl<const W: usize> Fragment<W> {
             }
             block
         };
-        let mut blocks = Vec::with_capacity(ranges.len());
-        // Now, since pages that are written already have to be copied.
-        prefer_large_pages(blocks.spare_capacity_mut());
-        let work = ranges.par_iter().with_min_len(64).map(make_block);
-        work.collect_into_vec(&mut blocks);
-        blocks
+        ranges.par_iter().with_min_len(64).map(make_block).collect()
     }
 }
