@@ -21,7 +21,7 @@ use halfshade::prepare::prepare_keeping;
 use halfshade::render::{self, Job, render};
 use halfshade::scene::{Keep, Omission};
 
-const TURNS: usize = 7;
+const TURNS: usize = 5;
 
 /// A scene file that has much of one kind of thing to leave out.
 struct Subject {
@@ -158,7 +158,7 @@ fn subjects(folder: &Path) -> Vec<Subject> {
     )
     .unwrap();
     let black: String = (0..16)
-        .map(|i| format!("[[light]]\nkind = \"disk\"\nposition = [{i}, 9, 4]\ndirection = [0, -1, 0]\nradius = 0.5\nradiance = [0, 0, 0]\n"))
+        .map(|i| format!("[[light]]\nkind = \"disk\"\nposition = [{i}, 9, 4]\nnormal = [0, -1, 0]\nradius = 0.5\nradiance = [0, 0, 0]\n"))
         .collect();
     let mut subjects = vec![
         Subject {

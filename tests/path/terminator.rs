@@ -86,7 +86,8 @@ fn the_terminator_of_a_point_light_shows_no_facets() {
         [jump(&with), jump(&without)],
     );
     println!("errors {errors:?}, jumps {jumps:?}");
-    assert!(errors[0] < 0.2 * errors[1] && jumps[0] < 0.02 && jumps[1] > 0.05);
+    // A cosine falls by 0.0052 from one place to the next.
+    assert!(errors[0] < 0.05 * errors[1] && jumps[0] < 0.006 && jumps[1] > 0.02);
 }
 
 #[test]
