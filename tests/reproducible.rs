@@ -9,9 +9,9 @@ use common::build::*;
 use halfshade::bvh::Builder;
 use halfshade::color::Rgb;
 use halfshade::film::{Rect, StoppedBy};
-use halfshade::light::{DistantLight, Light};
-use halfshade::material::AlphaMode;
-use halfshade::math::{UnitVec3, Vec3};
+use halfshade::light::{DistantLight, Light, RectangleLight};
+use halfshade::material::{AlphaMode, Material};
+use halfshade::math::{DAffine3, DQuat, DVec3, UnitVec3, Vec3};
 use halfshade::prepare::prepare;
 use halfshade::render::{Event, Job, render, replay};
 use halfshade::sampling::{Pattern, SamplingConfig};
@@ -81,6 +81,40 @@ fn surfaces_that_are_lit_in_rows_have_the_bits_of_those_that_are_not() {
         p.exponent = TexturedScalar::constant(20.0);
     });
     add_sphere(&mut plain, Vec3::new(-0.4, 0.4, 1.8), 0.4, 12, glossy);
+    // Smooth, mirrored, and seen from one side.
+    let body = phong(|p| p.diffuse = TexturedRgb::constant(Rgb::splat(0.6)));
+    add_sphere(&mut plain, Vec3::ZERO, 0.5, 8, body.clone());
+    let mesh = plain.meshes.pop().unwrap();
+    let normals = mesh.positions().to_vec();
+    plain.meshes.push(mesh.with_normals(normals).unwrap());
+    let mut mirrored = plain.instances.last().unwrap().clone();
+    plain.instances.last_mut().unwrap().transform.translation = DVec3::new(0.4, 0.5, 2.2);
+    mirrored.transform = DAffine3::from_scale_rotation_translation(
+        DVec3::new(-1.0, 0.7, 1.0),
+        DQuat::IDENTITY,
+        DVec3::new(-1.8, 0.4, 1.6),
+    );
+    plain.instances.push(mirrored);
+    let sided = Material {
+        is_double_sided: false,
+        ..body
+    };
+    add_quad(
+        &mut plain,
+        Vec3::new(2.0, 1.0, -2.0),
+        Vec3::X,
+        Vec3::Y,
+        sided,
+    );
+    let rectangle = RectangleLight {
+        center: Vec3::new(-2.0, 3.0, 3.0),
+        half_u: Vec3::X * 0.5,
+        half_v: Vec3::new(0.0, 0.3, 0.3),
+        radiance: Rgb::splat(4.0),
+        is_visible: true,
+        samples: 1,
+    };
+    add_light(&mut plain, Light::Rectangle(rectangle));
     let sun = DistantLight {
         direction: UnitVec3::normalize(Vec3::new(0.3, -1.0, -0.4)).unwrap(),
         irradiance: Rgb::WHITE,

@@ -2,7 +2,7 @@
 
 use super::{Light, LightSample, ShadowEnd};
 use crate::color::Rgb;
-use crate::math::{ROW, UnitVec3, Vec2, Vec3, VectorRow};
+use crate::math::{FEW, ROW, UnitVec3, Vec2, Vec3, VectorRow};
 
 /// [`Light::sample`] of each point of a row.
 #[derive(Debug)]
@@ -23,10 +23,10 @@ pub struct LightSampleRow {
 impl LightSampleRow {
     /// Without a sample.
     pub const NONE: Self = Self {
-        wi: VectorRow::ZERO,
+        wi: VectorRow::Z,
         weight: VectorRow::ZERO,
         density: [0.0; ROW],
-        end: VectorRow::ZERO,
+        end: VectorRow::Z,
         has_direction: false,
         is_some: [false; ROW],
     };
@@ -85,7 +85,9 @@ impl Light {
         count: usize,
         samples: &mut LightSampleRow,
     ) {
-        if let Light::Disk(light) = self {
+        if let Light::Disk(light) = self
+            && count >= FEW
+        {
             *samples = light.sample_row(points, u);
             return;
         }

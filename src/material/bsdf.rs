@@ -234,7 +234,7 @@ impl Bsdf {
     /// show, takes none.
     pub fn ambient(&self, view: &View) -> Rgb {
         match &self.lobes {
-            Lobes::Phong { diffuse, .. } => *diffuse,
+            Lobes::Phong { .. } => self.diffuse(),
             Lobes::Layered(layers) => layers.ambient(&view.pair(view.wo)),
         }
     }

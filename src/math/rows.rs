@@ -15,6 +15,9 @@ pub use pulp::NullaryFnOnce as RowJob;
 /// The most samples that are computed together.
 pub const ROW: usize = 64;
 
+/// Below so many samples each by itself is quicker than a whole row.
+pub const FEW: usize = 12;
+
 /// One number for each sample.
 pub type Row = [f32; ROW];
 
@@ -25,6 +28,9 @@ pub struct VectorRow(pub [Row; 3]);
 impl VectorRow {
     /// All of them zero.
     pub const ZERO: Self = Self([[0.0; ROW]; 3]);
+
+    /// The z axis for each.
+    pub const Z: Self = Self([[0.0; ROW], [0.0; ROW], [1.0; ROW]]);
 
     /// The vector of sample `i`.
     #[inline(always)]

@@ -23,7 +23,7 @@ use crate::camera::Camera;
 use crate::color::Rgb;
 use crate::import::{WarningCode, Warnings};
 use crate::light::Light;
-use crate::material::Bsdf;
+use crate::material::{Bsdf, Material};
 use crate::math::{Aabb, DAffine3, DVec3, Mat3, Ray, UnitVec3, Vec3, gamma};
 use crate::scene::{Background, Keep, LeftOut, MeshId, Omission, Placed, Scene};
 
@@ -55,7 +55,7 @@ pub struct PreparedScene<'a> {
     normal_matrices: Vec<Mat3>,
     /// Per instance of the scene: -1 where its transform mirrors, else 1.
     orientation: Vec<f32>,
-    /// Per instance of the scene: how its surface scatters light, where it is plain.
+    /// Per material: how it scatters light, where it is plain.
     plain: Vec<Option<Bsdf>>,
     /// Whether blockers are asked for their opacity.
     has_transparency: bool,
@@ -133,9 +133,7 @@ fn prepare_all(scene: &Scene, builder: Builder, flatten_budget: u64, keep: Keep)
             .iter()
             .map(|i| i.transform.matrix3.determinant().signum() as f32)
             .collect(),
-        plain: (scene.instances.iter())
-            .map(|instance| plain::plain(scene, instance))
-            .collect(),
+        plain: scene.materials.iter().map(Material::plain).collect(),
         has_transparency: asks_all || !scene.instances.iter().all(|i| scene.is_opaque(i)),
         geometry,
     };
@@ -288,6 +286,7 @@ impl PreparedScene<'_> {
             + size_of_val(self.normal_matrices.as_slice())
             + size_of_val(self.orientation.as_slice())
             + size_of_val(self.lights.as_slice())
+            + size_of_val(self.plain.as_slice())
     }
 }
 

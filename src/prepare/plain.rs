@@ -7,24 +7,15 @@ use super::geometry::Placing;
 use crate::bvh::Hit;
 use crate::interaction::LitSide;
 use crate::material::Bsdf;
-use crate::math::{DVec3, ROW, Ray, Row, RowJob, UnitVec3, VectorRow, widely};
-use crate::scene::{Instance, Scene};
-
-/// How the surface of `instance` scatters light, where that is the same everywhere and in all there is to it:
-/// no textures, vertex colours, mirrors, glass, holes or light of its own.
-pub(super) fn plain(scene: &Scene, instance: &Instance) -> Option<Bsdf> {
-    let has_colors = !scene.mesh(instance.mesh).colors().is_empty();
-    let material = &scene.materials[instance.material.0 as usize];
-    material.plain().filter(|_| !has_colors)
-}
+use crate::math::{DVec3, FEW, ROW, Ray, Row, RowJob, UnitVec3, VectorRow, widely};
 
 /// Hits on plain surfaces, and what shading reads there.
 #[derive(Debug)]
 pub struct PlainRow {
     /// Hits are 0 to this.
     count: usize,
-    /// By scene instance.
-    instances: [u32; ROW],
+    /// Their materials.
+    materials: [u32; ROW],
     corners: [VectorRow; 3],
     /// Weights of the second and third corner.
     weights: [Row; 2],
@@ -54,9 +45,9 @@ impl SeenRow {
         point: VectorRow::ZERO,
         shadow_origin: VectorRow::ZERO,
         is_bulging: [false; ROW],
-        geometric_normal: VectorRow::ZERO,
-        shading_normal: VectorRow::ZERO,
-        wo: VectorRow::ZERO,
+        geometric_normal: VectorRow::Z,
+        shading_normal: VectorRow::Z,
+        wo: VectorRow::Z,
     };
 }
 
@@ -64,7 +55,7 @@ impl PlainRow {
     /// Without hits.
     pub const EMPTY: Self = Self {
         count: 0,
-        instances: [0; ROW],
+        materials: [0; ROW],
         corners: [VectorRow::ZERO; 3],
         weights: [[0.0; ROW]; 2],
         back: VectorRow::ZERO,
@@ -114,7 +105,15 @@ impl PlainRow {
     /// Computes what shading reads at all hits; with `is_bulging` shadows start on the surface that vertex normals
     /// describe.
     pub fn locate(&mut self, is_bulging: bool) {
-        self.seen = widely(Locate(self, is_bulging));
+        if self.count < FEW {
+            let mut seen = SeenRow::NOWHERE;
+            for i in 0..self.count {
+                self.locate_one::<true>(i, is_bulging, &mut seen);
+            }
+            self.seen = seen;
+        } else {
+            self.seen = widely(Locate(self, is_bulging));
+        }
     }
 
     #[inline(always)]
@@ -183,7 +182,10 @@ impl PreparedScene<'_> {
         let traced = &self.geometry.traced[hit.instance as usize];
         let (instance, triangle) = self.triangle(hit);
         let is_flat = matches!(traced.placing, Placing::Flattened(_));
-        if !is_flat || self.plain[instance as usize].is_none() {
+        let of_scene = &self.scene.instances[instance as usize];
+        let mesh = self.scene.mesh(of_scene.mesh);
+        let is_plain = self.plain[of_scene.material.0 as usize].is_some();
+        if !(is_flat && is_plain && mesh.colors().is_empty()) {
             return false;
         }
         let i = row.count;
@@ -197,8 +199,7 @@ impl PreparedScene<'_> {
         row.weights[1][i] = hit.v;
         row.back.set(i, -ray.direction);
         row.orientation[i] = self.orientation[instance as usize];
-        row.instances[i] = instance;
-        let mesh = (self.scene).mesh(self.scene.instances[instance as usize].mesh);
+        row.materials[i] = of_scene.material.0;
         let normals = self.normals_of(instance, mesh, || mesh.indices()[triangle as usize]);
         row.has_normals[i] = normals.is_some();
         if let Some(normals) = normals {
@@ -212,6 +213,6 @@ impl PreparedScene<'_> {
 
     /// How hit `i` of `row` scatters light.
     pub fn plain_bsdf(&self, row: &PlainRow, i: usize) -> Option<&Bsdf> {
-        self.plain[row.instances[i] as usize].as_ref()
+        self.plain[row.materials[i] as usize].as_ref()
     }
 }

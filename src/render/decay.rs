@@ -26,7 +26,7 @@ impl Decay {
     pub fn of(pattern: Pattern, technique: IntegratorKind) -> Self {
         let (exponent, deviation) = match (pattern, technique) {
             (Pattern::Grid | Pattern::Jittered | Pattern::Random, _) => (1.0, 0.0),
-            (Pattern::Sobol, IntegratorKind::Path) => (1.2, UNSURE),
+            (Pattern::Sobol, IntegratorKind::Path) => (1.1, UNSURE),
             (Pattern::Sobol, _) => (1.5, UNSURE),
         };
         Self {

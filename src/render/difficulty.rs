@@ -32,8 +32,8 @@ impl Difficulty {
     pub fn of(film: Rect, tiles: &[Tile]) -> Self {
         let mut seen = vec![[Seen::default(); 2]; film.area() as usize];
         let width = film.width as usize;
-        let bands = seen.par_chunks_mut(width * TILE as usize);
-        let rows = tiles.par_chunks(film.width.div_ceil(TILE) as usize);
+        let bands = seen.par_chunks_mut((width * TILE as usize).max(1));
+        let rows = tiles.par_chunks((film.width.div_ceil(TILE) as usize).max(1));
         bands.zip(rows).for_each(|(band, tiles)| {
             for tile in tiles {
                 let first = tile.rect();

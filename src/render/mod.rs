@@ -51,6 +51,9 @@ const FORECAST_SAMPLES: u64 = 8;
 /// unless this share of the work is done.
 const LATEST_FORECAST_SHARE: f64 = 0.25;
 
+/// What it takes, for a pixel, to find out where samples go, bytes.
+const ALLOTMENT_BYTES: usize = 128;
+
 /// About what the instances that are seen in a pixel take, bytes: most pixels see one or two.
 const OBJECT_BYTES: usize = 256;
 
@@ -73,7 +76,7 @@ impl Job<'_> {
     /// The most memory that [`render`] takes for the film, bytes: tiles and film are there
     /// together while they are put together.
     pub fn memory_bytes(&self) -> u64 {
-        let pixel = 2 * size_of::<Pixel>() + 2 * size_of::<Halves>();
+        let pixel = 2 * size_of::<Pixel>() + 2 * size_of::<Halves>() + ALLOTMENT_BYTES;
         let layer = size_of::<[[f64; 2]; 3]>() + size_of::<[f32; 3]>();
         let objects = match self.layers.contains(&Aov::Objects) {
             true => OBJECT_BYTES,
@@ -313,7 +316,11 @@ impl Run<'_> {
         };
         let forecast = bounds.forecast(course);
         self.total.store(forecast.samples, Ordering::Relaxed);
-        let share = self.pace.seconds() / forecast.seconds;
+        // By the clock, but where the number of samples tells: what depends on no clock can be repeated.
+        let share = match self.limits.deadline {
+            Some(_) => self.pace.seconds() / forecast.seconds,
+            None => now.samples as f64 / forecast.samples as f64,
+        };
         // Of a handful of samples nobody can tell how fast the error will fall.
         let is_known = now.samples >= FORECAST_SAMPLES * self.job.crop.area()
             && share >= FORECAST_SHARE

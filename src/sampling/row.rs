@@ -4,10 +4,7 @@ use super::key::Key;
 use super::sampler::{DimensionSet, Sampler};
 use super::sobol::{self, Pair};
 use super::{Pattern, Target};
-use crate::math::{ROW, RowJob, Vec2, widely};
-
-/// Below so many samples the points of each by itself are quicker than a whole row.
-const FEW: usize = 8;
+use crate::math::{FEW, ROW, RowJob, Vec2, widely};
 
 impl Sampler {
     /// [`Sampler::camera`] of each of `samplers`, [`ROW`] at most, into the first of `points`.

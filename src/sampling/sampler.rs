@@ -119,15 +119,18 @@ impl Sampler {
     /// With a `count` of 1 the points of all camera samples of the pixel form the pattern. With
     /// more, each camera sample has its own pattern on the light (all of them together are one for Sobol).
     pub fn light(&self, vertex: u32, light: u32, j: u32, count: u32) -> Vec2 {
-        if self.pattern == Pattern::Sobol {
-            let (set, pair) = Self::sobol_light(vertex, light, count);
-            return self.sobol(set, self.number(j, count), pair);
-        }
         let set = DimensionSet::light(vertex, light);
-        if count > 1 {
-            self.point_of(set, j, count)
-        } else {
-            self.point(set)
+        // Of each camera sample its own.
+        let key = || self.key.with(set.0).with(u64::from(self.index));
+        match self.pattern {
+            Pattern::Sobol => {
+                let (set, pair) = Self::sobol_light(vertex, light, count);
+                self.sobol(set, self.number(j, count), pair)
+            }
+            Pattern::Random => self.random(set, self.number(j, count)),
+            Pattern::Grid if count > 1 => Cells::at_least(count).point(key(), j, false),
+            Pattern::Jittered if count > 1 => Cells::at_least(count).point(key(), j, true),
+            Pattern::Grid | Pattern::Jittered => self.point(set),
         }
     }
 
@@ -184,18 +187,6 @@ impl Sampler {
             Pattern::Jittered => self.cells.point(self.key.with(set.0), self.index, true),
             Pattern::Random => self.random(set, u64::from(self.index)),
             Pattern::Sobol => self.sobol(set, u64::from(self.index), Pair::First),
-        }
-    }
-
-    /// Point `j` of the `count` that this sample has in `set`.
-    fn point_of(&self, set: DimensionSet, j: u32, count: u32) -> Vec2 {
-        let number = self.number(j, count);
-        let key = || self.key.with(set.0).with(u64::from(self.index));
-        match self.pattern {
-            Pattern::Grid => Cells::at_least(count).point(key(), j, false),
-            Pattern::Jittered => Cells::at_least(count).point(key(), j, true),
-            Pattern::Random => self.random(set, number),
-            Pattern::Sobol => self.sobol(set, number, Pair::First),
         }
     }
 

@@ -56,29 +56,26 @@ fn an_error_that_is_asked_for_is_reached_and_not_overdone() {
 fn what_an_error_takes_is_foreseen() {
     with_renderer(|render| {
         for integrator in [IntegratorKind::Whitted, IntegratorKind::Path] {
-            for is_adaptive in [false, true] {
-                let settings = Settings {
-                    integrator,
-                    size: UVec2::new(120, 72),
-                    ..settings(Pattern::Sobol, 16, 1)
-                };
-                let limits = Limits {
-                    error: Some(0.015),
-                    is_adaptive,
-                    ..OPEN
-                };
-                let forecast: Mutex<Option<Forecast>> = Mutex::new(None);
-                let film = render(&settings, &limits, &|event| {
-                    if let Event::Forecast(f) = event {
-                        *forecast.lock().unwrap() = Some(f);
-                    }
-                });
-                let forecast = forecast.into_inner().unwrap().unwrap();
-                let got = film.sample_counts().1 * film.pixels.len() as f64;
-                let share = forecast.samples as f64 / got;
-                println!("{integrator:?} {is_adaptive}: {forecast}, {share:.3} of the samples");
-                assert!((0.75..1.33).contains(&share), "{share}");
-            }
+            let settings = Settings {
+                integrator,
+                size: UVec2::new(120, 72),
+                ..settings(Pattern::Sobol, 16, 1)
+            };
+            let limits = Limits {
+                error: Some(0.015),
+                ..OPEN
+            };
+            let forecast: Mutex<Option<Forecast>> = Mutex::new(None);
+            let film = render(&settings, &limits, &|event| {
+                if let Event::Forecast(f) = event {
+                    *forecast.lock().unwrap() = Some(f);
+                }
+            });
+            let forecast = forecast.into_inner().unwrap().unwrap();
+            let got = film.sample_counts().1 * film.pixels.len() as f64;
+            let share = forecast.samples as f64 / got;
+            println!("{integrator:?}: {forecast}, {share:.3} of the samples");
+            assert!((0.75..1.33).contains(&share), "{share}");
         }
     });
 }

@@ -85,10 +85,19 @@ impl Reader<'_> {
     }
 
     fn change(&mut self, to: Setting) {
-        self.block.changes.push(Change {
-            face: self.room.face_ends.count(),
-            to,
-        });
+        let face = self.room.face_ends.count();
+        let kind = std::mem::discriminant(&to);
+        // What no face has used is as if it had never been said.
+        let unused = self.block.changes.iter().rev();
+        let unused = unused.take_while(|change| change.face == face);
+        let same = unused
+            .enumerate()
+            .find(|(_, change)| std::mem::discriminant(&change.to) == kind);
+        if let Some((back, _)) = same {
+            let at = self.block.changes.len() - 1 - back;
+            self.block.changes.remove(at);
+        }
+        self.block.changes.push(Change { face, to });
     }
 
     fn vertex(&mut self, mut words: Words<'_>) -> Result<(), String> {

@@ -9,12 +9,9 @@ use crate::integrate::way::way_in_front;
 use crate::integrate::{CameraSample, RayLog, Sight, Source};
 use crate::light::{Light, LightSampleRow};
 use crate::material::Bsdf;
-use crate::math::{ROW, Ray, Row, RowJob, Vec2, VectorRow, widely};
+use crate::math::{FEW, ROW, Ray, Row, RowJob, Vec2, VectorRow, widely};
 use crate::prepare::PlainRow;
 use crate::sampling::Sampler;
-
-/// Below so many samples the arithmetic of each by itself is quicker than that of a whole row.
-const FEW: usize = 12;
 
 /// Camera samples that see plain surfaces.
 pub(super) struct Plain {
