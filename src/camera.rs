@@ -94,7 +94,7 @@ impl Camera {
     }
 
     #[inline(always)]
-    fn to_world(&self, v: Vec3) -> Vec3 {
+    fn in_world(&self, v: Vec3) -> Vec3 {
         *self.right * v.x + *self.up * v.y + *self.back * v.z
     }
 
@@ -154,8 +154,8 @@ impl CameraRays<'_> {
             (origin, direction)
         };
         Ray::new(
-            camera.position + camera.to_world(origin),
-            camera.to_world(direction.normalize()),
+            camera.position + camera.in_world(origin),
+            camera.in_world(direction.normalize()),
         )
     }
 }

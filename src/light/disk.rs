@@ -105,8 +105,8 @@ impl RowJob for SampleRow<'_> {
         let Self { light, points, u } = self;
         let normal = light.exact_normal();
         let mut samples = LightSampleRow::NONE;
-        for i in 0..ROW {
-            samples.set(i, light.sample_across(normal, points.get(i), u[i]));
+        for (i, u) in u.iter().enumerate() {
+            samples.set(i, light.sample_across(normal, points.get(i), *u));
         }
         samples
     }

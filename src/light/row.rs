@@ -92,8 +92,8 @@ impl Light {
             return;
         }
         samples.has_direction = matches!(self, Light::Distant(_));
-        for i in 0..count {
-            samples.set(i, self.sample(points.get(i), u[i]));
+        for (i, u) in u[..count].iter().enumerate() {
+            samples.set(i, self.sample(points.get(i), *u));
         }
     }
 }

@@ -85,9 +85,9 @@ impl Points<'_> {
     #[inline(always)]
     fn all(&self, pair: Pair) -> [Vec2; ROW] {
         let mut points = [Vec2::ZERO; ROW];
-        for i in 0..ROW {
+        for (i, point) in points.iter_mut().enumerate() {
             let key = self.keys[i].with(self.set.0);
-            points[i] = sobol::point_of(key, self.numbers[i], pair);
+            *point = sobol::point_of(key, self.numbers[i], pair);
         }
         points
     }
