@@ -1,6 +1,6 @@
 //! Where a ray meets a surface, and the rays that start there.
 
-use crate::math::{Ray, UNIT_ROUNDOFF, UnitVec3, Vec3, gamma};
+use crate::math::{Ray, UNIT_ROUNDOFF, UnitVec3, Vec3, gamma, larger};
 
 /// A point on a surface, seen from a direction.
 ///
@@ -153,12 +153,6 @@ fn ray_to(origin: Vec3, target: Vec3) -> Ray {
 #[inline(always)]
 fn largest(v: Vec3) -> f32 {
     larger(larger(v.x.abs(), v.y.abs()), v.z.abs())
-}
-
-/// `f32::max` of what is no NaN, in a single instruction; `b` where `a` is NaN.
-#[inline(always)]
-fn larger(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
 }
 
 /// The error of a point that was computed in double precision and rounded once.

@@ -16,7 +16,7 @@
 
 use super::layout::{Block, Node};
 use super::simd::Lanes;
-use crate::math::UNIT_ROUNDOFF;
+use crate::math::{UNIT_ROUNDOFF, lesser};
 
 /// By which share of the largest coordinate a beam is wider than its rays.
 const PAD: f32 = 64.0 * UNIT_ROUNDOFF;
@@ -62,11 +62,6 @@ impl Interval {
             high: self.high + by,
         }
     }
-}
-
-#[inline(always)]
-fn lesser(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
 }
 
 /// What holds some rays of a packet, coordinates in the packet's order of axes. Once it is

@@ -10,6 +10,8 @@
 //! What runs for each triangle is `#[inline(always)]` and free of `array::map`, which the
 //! compiler leaves as a call (with its copies) inside of functions of another instruction set.
 
+use crate::math::{larger, lesser};
+
 /// Relative tolerance of [`ExactRay::confirms`]: `t` is rounded to `f32`, which moves the
 /// point by at most half of this, and the f64 arithmetic by much less.
 const POINT_TOLERANCE: f64 = f32::EPSILON as f64;
@@ -120,8 +122,8 @@ impl ExactRay {
             let way = f64::from(t) * self.direction[k];
             let point = self.origin[k] + way;
             let slack = POINT_TOLERANCE * (self.origin[k].abs() + way.abs());
-            let low = f64::from(lesser_of(a[k], lesser_of(b[k], c[k])));
-            let high = f64::from(greater_of(a[k], greater_of(b[k], c[k])));
+            let low = f64::from(lesser(a[k], lesser(b[k], c[k])));
+            let high = f64::from(larger(a[k], larger(b[k], c[k])));
             // Not `&&`: one branch for all.
             inside &= (low - slack <= point) & (point <= high + slack);
         }
@@ -207,8 +209,8 @@ impl<const W: usize> ExactRays<'_, W> {
                 let way = f64::from(crossing) * d;
                 let point = o + way;
                 let slack = POINT_TOLERANCE * (o.abs() + way.abs());
-                let low = f64::from(lesser_of(a[k], lesser_of(b[k], c[k])));
-                let high = f64::from(greater_of(a[k], greater_of(b[k], c[k])));
+                let low = f64::from(lesser(a[k], lesser(b[k], c[k])));
+                let high = f64::from(larger(a[k], larger(b[k], c[k])));
                 is_confirmed &= (low - slack <= point) & (point <= high + slack);
             }
             t[i] = crossing;
@@ -262,30 +264,6 @@ fn sum(a: Four) -> f64 {
 #[cold]
 fn clamped(weights: Four, turn: f64) -> Four {
     weights.map(|w| if turn * w > 0.0 { w } else { 0.0 })
-}
-
-/// `f64::min` where there is no NaN, in a single instruction.
-#[inline(always)]
-fn lesser(x: f64, y: f64) -> f64 {
-    if x < y { x } else { y }
-}
-
-/// `f64::max` where there is no NaN, in a single instruction.
-#[inline(always)]
-fn larger(x: f64, y: f64) -> f64 {
-    if x > y { x } else { y }
-}
-
-/// `f32::max`, likewise.
-#[inline(always)]
-fn greater_of(x: f32, y: f32) -> f32 {
-    if x > y { x } else { y }
-}
-
-/// `f32::min`, likewise.
-#[inline(always)]
-fn lesser_of(x: f32, y: f32) -> f32 {
-    if x < y { x } else { y }
 }
 
 #[inline(always)]

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::hypotenuse;
-use crate::math::{DVec3, Vec2};
+use crate::math::{DVec3, Vec2, larger, lesser};
 use crate::sampling::square_to_cone;
 
 /// The directions from the origin in which a disk is seen.
@@ -108,11 +108,11 @@ impl SphericalEllipse {
     pub fn sample(&self, u: Vec2) -> DiskSample {
         let round = square_to_cone(u, self.one_minus_cos);
         // Rounding must not bring the edge of the cone down to the horizon.
-        let round_z = greater(round.z, self.cos);
+        let round_z = larger(round.z, self.cos);
         let y = round.y * self.squash;
         let z = (round_z * round_z + (round.y - y) * (round.y + y)).sqrt();
         let direction = self.wide * round.x + self.narrow * y + self.axis * z;
-        let toward_plane = greater(
+        let toward_plane = larger(
             direction.dot(self.toward_plane),
             self.height / self.farthest,
         );
@@ -136,16 +136,4 @@ fn lateral(offset: DVec3, height: f64, normal: DVec3) -> (DVec3, f64) {
     } else {
         (any, 0.0)
     }
-}
-
-/// `f64::min` of what is no NaN, in a single instruction.
-#[inline(always)]
-fn lesser(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
-}
-
-/// `f64::max`, likewise.
-#[inline(always)]
-fn greater(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
 }

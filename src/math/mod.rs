@@ -5,6 +5,7 @@
 //! Here are the types that glam lacks: unit vectors, rays, boxes and shading frames.
 
 mod aabb;
+mod extremes;
 mod frame;
 mod morton;
 mod ray;
@@ -13,6 +14,7 @@ mod rows;
 mod unit;
 
 pub use aabb::Aabb;
+pub use extremes::{larger, lesser};
 pub use frame::Frame;
 pub use glam::{Affine2, DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, Mat3, UVec2, Vec2, Vec3};
 pub use morton::morton_pixel;

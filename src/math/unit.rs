@@ -4,6 +4,8 @@ use std::ops::{Deref, Neg};
 
 use glam::{DVec3, Vec3};
 
+use super::larger;
+
 /// A direction of length 1, up to rounding.
 ///
 /// The only ways in are [`UnitVec3::normalize`] and [`UnitVec3::from_normalized`], so a cosine
@@ -58,12 +60,6 @@ impl UnitVec3 {
     pub fn get(self) -> Vec3 {
         self.0
     }
-}
-
-/// `f32::max` and `f64::max` of what is no NaN, in a single instruction.
-#[inline(always)]
-fn larger<T: PartialOrd>(a: T, b: T) -> T {
-    if a > b { a } else { b }
 }
 
 impl Deref for UnitVec3 {

@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use crate::math::{DVec2, DVec3, Vec2};
+use crate::math::{DVec2, DVec3, Vec2, lesser};
 
 /// The unit disk, uniform by area; squares around the middle become circles
 /// (Shirley and Chiu 1997, "A Low Distortion Map Between Disk and Square").
@@ -64,7 +64,6 @@ pub fn square_to_cone(u: Vec2, one_minus_cos: f64) -> DVec3 {
     // The disk and the sphere's cap by Lambert's equal-area projection: the height falls with the
     // square of the radius.
     let disk = exact_disk(u);
-    let square = disk.length_squared();
-    let depth = one_minus_cos * if square < 1.0 { square } else { 1.0 };
+    let depth = one_minus_cos * lesser(disk.length_squared(), 1.0);
     (disk * (one_minus_cos * (2.0 - depth)).sqrt()).extend(1.0 - depth)
 }
