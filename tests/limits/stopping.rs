@@ -50,7 +50,7 @@ fn an_error_that_is_asked_for_is_reached_and_not_overdone() {
     });
 }
 
-/// What an error takes is foreseen after the first passes. (Of paths it was 0.55 to 0.69 of what it took here, whose errors
+/// What an error takes is foreseen after the first passes. (Of paths it was 0.55 to 0.75 of what it took here, whose errors
 /// fall ever more slowly.)
 #[test]
 fn what_an_error_takes_is_foreseen() {
