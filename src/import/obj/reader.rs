@@ -1,5 +1,7 @@
 //! The statements of a block of an OBJ file to lists.
 
+use std::mem::discriminant;
+
 use super::geometry::{Corner, WHITE};
 use super::lines::{Line, LineError, Lines, Words, number, shown};
 use super::names::{library_names, name_of};
@@ -86,18 +88,15 @@ impl Reader<'_> {
 
     fn change(&mut self, to: Setting) {
         let face = self.room.face_ends.count();
-        let kind = std::mem::discriminant(&to);
-        // What no face has used is as if it had never been said.
-        let unused = self.block.changes.iter().rev();
-        let unused = unused.take_while(|change| change.face == face);
-        let same = unused
-            .enumerate()
-            .find(|(_, change)| std::mem::discriminant(&change.to) == kind);
-        if let Some((back, _)) = same {
-            let at = self.block.changes.len() - 1 - back;
-            self.block.changes.remove(at);
+        let kind = discriminant(&to);
+        // What no face has used is as if it had never been said: a face has one change of each of three kinds at most.
+        let changes = &mut self.block.changes;
+        let is_unused = |change: &Change| change.face == face && discriminant(&change.to) == kind;
+        let mut recent = changes.len().saturating_sub(3)..changes.len();
+        if let Some(at) = recent.find(|&at| is_unused(&changes[at])) {
+            changes.remove(at);
         }
-        self.block.changes.push(Change { face, to });
+        changes.push(Change { face, to });
     }
 
     fn vertex(&mut self, mut words: Words<'_>) -> Result<(), String> {
