@@ -185,7 +185,7 @@ impl Bsdf {
                 diffuse,
                 reflectance,
                 ..
-            } if reflectance.is_black() => Some(*diffuse * (1.0 / PI)),
+            } if reflectance.is_black() => Some(lambert(*diffuse)),
             _ => None,
         }
     }
@@ -240,6 +240,11 @@ impl Bsdf {
     }
 }
 
+/// Lambert's lobe, 1/sr.
+fn lambert(reflectance: Rgb) -> Rgb {
+    reflectance * (1.0 / PI)
+}
+
 impl Lobes {
     pub(super) fn value(&self, pair: &Pair, has_mirrors: bool) -> Rgb {
         match self {
@@ -250,7 +255,7 @@ impl Lobes {
                 reflectance,
                 exponent,
             } => {
-                let matte = *diffuse * (1.0 / PI);
+                let matte = lambert(*diffuse);
                 if reflectance.is_black() {
                     return matte;
                 }

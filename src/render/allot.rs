@@ -121,7 +121,8 @@ fn sorted_classes(tiles: &[Allotted]) -> Classes {
     merged(halves)
 }
 
-/// [`sorted_classes`] in another order, and quicker where there are few different numbers of samples, as there are of powers of two.
+/// [`sorted_classes`] in another order, and quicker where there are few different numbers of samples, as there are
+/// of powers of two.
 fn counted_classes(tiles: &[Allotted]) -> Classes {
     let scores = || tiles.iter().flat_map(|tile| &tile.shares).map(|s| s.score);
     let (least, most) = (scores().min().unwrap_or(0), scores().max().unwrap_or(0));

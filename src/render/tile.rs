@@ -278,10 +278,8 @@ fn camera_samples(
     for (film, pixel) in film.iter_mut().zip(pixels) {
         *film = film_position(pixel, *film);
     }
-    if job.camera.lens_radius > 0.0 {
-        for (lens, sampler) in lens.iter_mut().zip(samplers) {
-            *lens = sampler.lens();
-        }
+    for (place, sampler) in lens.iter_mut().zip(samplers) {
+        *place = lens_position(job, sampler);
     }
     let [origins, directions] = rays.row(&film, &lens);
     for (i, sampler) in samplers.iter().enumerate() {
@@ -301,12 +299,16 @@ pub(super) fn camera_sample(
 ) -> (Ray, Sampler) {
     let sampler = Sampler::new(&job.settings.sampling, pixel, index);
     let film = film_position(pixel, sampler.camera());
-    let lens = if job.camera.lens_radius > 0.0 {
+    (rays.at(film, lens_position(job, &sampler)), sampler)
+}
+
+/// Where on the lens a sample starts, in the unit disk; a pinhole needs no number for it.
+fn lens_position(job: &Job, sampler: &Sampler) -> Vec2 {
+    if job.camera.lens_radius > 0.0 {
         sampler.lens()
     } else {
         Vec2::ZERO
-    };
-    (rays.at(film, lens), sampler)
+    }
 }
 
 /// The tiles of the job's part of the film, row by row.
