@@ -148,6 +148,43 @@ impl<S> BeamTest<S> {
         }
     }
 
+    /// The same for each of several rays, by their origins, relative to the packet's centre, and slopes.
+    #[inline(always)]
+    pub fn of_rays<const W: usize>(course: &Course, origins: [S; 3], slopes: [S; 2]) -> Self
+    where
+        S: Lanes<W>,
+    {
+        let pad = S::splat(PAD * course.size);
+        let around = |x: S| [x.sub(pad), x.add(pad)];
+        let [x, y, z] = origins;
+        let [u, v] = slopes;
+        let zero = S::splat(0.0);
+        let [z, u, v] = if course.is_reversed {
+            [zero.sub(z), zero.sub(u), zero.sub(v)]
+        } else {
+            [z, u, v]
+        };
+        let [a, b, c] = course.center;
+        Self {
+            axes: course.axes,
+            center: [S::splat(a), S::splat(b), S::splat(c)],
+            is_reversed: course.is_reversed,
+            origins: [around(x), around(y), around(z)],
+            slopes: [[u, u], [v, v]],
+        }
+    }
+
+    /// The rays that may meet a box, of these least and greatest coordinates, no deeper than `far`.
+    #[inline(always)]
+    pub fn rays<const W: usize>(&self, bounds: &[[f32; 2]; 3], far: S) -> u32
+    where
+        S: Lanes<W>,
+    {
+        let [x, y, z] = self.axes;
+        let of = |axis: usize| [S::splat(bounds[axis][0]), S::splat(bounds[axis][1])];
+        self.test([of(x), of(y), of(z)], far).0
+    }
+
     /// The children that some ray may meet no deeper than `far`, and the least depths of them.
     #[inline(always)]
     pub fn children<const W: usize>(&self, node: &Node<W>, far: S) -> (u32, S)
@@ -212,6 +249,17 @@ impl<S> BeamTest<S> {
         let most = bounds[1].sub(self.center[axis]);
         least.le(high) & low.le(most)
     }
+}
+
+/// Least and greatest coordinates of all triangles of a block, by axis.
+#[inline(always)]
+pub(super) fn bounds<S: Lanes<W>, const W: usize>(block: &Block<W>) -> [[f32; 2]; 3] {
+    let [x, y, z] = [extent::<S, W>(block, 0), extent(block, 1), extent(block, 2)];
+    [
+        [x[0].least(), x[1].greatest()],
+        [y[0].least(), y[1].greatest()],
+        [z[0].least(), z[1].greatest()],
+    ]
 }
 
 // Functions, not closures: those would lack the instruction set of the walk.

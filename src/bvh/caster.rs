@@ -258,6 +258,18 @@ fn all_within(v: [f32; 3], limit: f32) -> bool {
     v[0].abs() <= limit && v[1].abs() <= limit && v[2].abs() <= limit
 }
 
+/// Whether `main` is the [`main_axis`] of a direction, whose components are in the order of its [`AXES`].
+#[inline(always)]
+pub(super) fn leads(main: usize, turned: [f32; 3]) -> bool {
+    let [x, y, z] = per_axis(|k| turned[k].abs());
+    // Of equal ones the lowest axis is the main one. False of NaN.
+    match main {
+        0 => (x <= z) & (y <= z),
+        1 => (x <= z) & (y < z),
+        _ => (x < z) & (y < z),
+    }
+}
+
 #[inline(always)]
 fn longest(size: [f32; 3]) -> usize {
     let second = usize::from(size[1] > size[0]);

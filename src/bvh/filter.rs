@@ -81,6 +81,103 @@ impl<S> Depth<S> {
     }
 }
 
+/// Triangles, sheared so that a ray runs along the last axis.
+///
+/// The same edge functions as in [`ExactRay::cross`](super::triangle::ExactRay::cross), in `f32`. With R
+/// the largest sheared and Z the largest main coordinate, each sheared coordinate is off by at most
+/// 2uR + 5uZ, an edge function hence by less than 12uR² + 20uRZ + 60u²Z²; what is compared with,
+/// e = 24u(R + 5uZ)(R + Z), is more. A NaN makes nothing certain.
+pub(super) struct Seen<S> {
+    edges: [S; 3],
+    depths: [S; 3],
+    /// The least of the edge functions.
+    least: S,
+    /// The greatest.
+    most: S,
+    /// e.
+    error: S,
+    /// Z.
+    reach: S,
+}
+
+/// Crossings that the exact test is certain to find, wherever they are along the ray.
+pub(super) struct Certain<S> {
+    /// A bit for each that is.
+    pub lanes: u32,
+    /// Not beyond the crossing: a depth in the direction of the ray.
+    pub near: S,
+    /// Not before it.
+    pub far: S,
+}
+
+impl<S> Seen<S> {
+    /// Those of the lanes in `among` whose ray is not certain to miss its triangle at these depths: a superset of what the
+    /// exact test accepts there.
+    ///
+    /// A triangle is out where one edge function is certainly negative and another certainly positive.
+    #[inline(always)]
+    pub fn candidates<const W: usize>(&self, depths: [S; 2], among: u32) -> u32
+    where
+        S: Lanes<W>,
+    {
+        let minus_error = S::splat(0.0).sub(self.error);
+        let lanes = !(self.least.lt(minus_error) & self.error.lt(self.most)) & among;
+        if lanes == 0 {
+            return 0;
+        }
+        lanes & !self.depth().certainly_outside(depths)
+    }
+
+    /// Those that the exact test accepts for certain, and bounds of the parameters that it gives them. `is_reversed`
+    /// says that rays run towards lower coordinates.
+    ///
+    /// All three edge functions must be beyond 2e on one side; then they are beyond e, and the area A is
+    /// beyond 3e, without rounding, and the test in f64, whose errors E = 2^-49 R(R + Z) are below
+    /// 2^-29 e, finds the ray inside, far from what it calls cancelled. It still asks that
+    /// the point at its t is in the triangle's box but for 2u|t d|. The true crossing is in that box, and t is off by
+    /// at most u for rounding and by 3E(1 + Z/h)/A + 4ε Z/h, relatively, for the sums
+    /// behind it, at the depth h: less than u/2 where A h > 2eZ, which is asked for here.
+    ///
+    /// The depth h = z₁ + f(z₁)/A is off by at most 10eD/A + 24uZ.
+    #[inline(always)]
+    pub fn certain<const W: usize>(&self, is_reversed: bool) -> Certain<S>
+    where
+        S: Lanes<W>,
+    {
+        let depth = self.depth();
+        let twice_error = self.error.add(self.error);
+        let is_inside =
+            twice_error.lt(self.least) | self.most.lt(S::splat(0.0).sub(twice_error));
+        let inverse = S::splat(1.0).div(depth.area);
+        let height = depth.beyond_first.mul_add(inverse, depth.first);
+        let ahead = if is_reversed {
+            S::splat(0.0).sub(height)
+        } else {
+            height
+        };
+        let sums = depth.error.mul(inverse).mul(depth.spread);
+        let off = sums.mul_add(
+            S::splat(4.0),
+            self.reach.mul(S::splat(64.0 * UNIT_ROUNDOFF)),
+        );
+        let near = ahead.sub(off);
+        let least_beyond = twice_error.mul_add(self.reach, S::splat(f32::MIN_POSITIVE));
+        Certain {
+            lanes: is_inside & least_beyond.lt(depth.area.mul(near)),
+            near,
+            far: ahead.add(off),
+        }
+    }
+
+    #[inline(always)]
+    fn depth<const W: usize>(&self) -> Depth<S>
+    where
+        S: Lanes<W>,
+    {
+        Depth::new(self.edges, self.depths, self.error, self.reach)
+    }
+}
+
 /// The constants for the triangle filter, in vectors: of one ray for several triangles, or of several rays
 /// that have their order of axes in common.
 pub(super) struct Filter<S> {
@@ -122,31 +219,26 @@ impl<S> Filter<S> {
         self.candidates(&corners, depths, u32::MAX >> (32 - count))
     }
 
-    /// Those of the lanes in `among` whose ray is not certain to miss its triangle: a superset of those that
-    /// [`ExactRay::cross`](super::triangle::ExactRay::cross) accepts at these depths.
-    ///
-    /// `corners` have their coordinates in the order `axes`.
-    ///
-    /// The same sheared edge functions as there, in `f32`. With R the largest sheared and Z
-    /// the largest main coordinate, each sheared coordinate is off by at most 2uR + 5uZ, an
-    /// edge function hence by less than 12uR² + 20uRZ + 60u²Z²; what is compared with,
-    /// e = 24u(R + 5uZ)(R + Z), is more. A triangle is out where one edge function is certainly
-    /// negative and another certainly positive. A NaN makes nothing certain.
+    /// Those of the lanes in `among` whose ray is not certain to miss its triangle: see [`Seen::candidates`].
     #[inline(always)]
-    pub fn candidates<const W: usize>(
-        &self,
-        corners: &[[S; 3]; 3],
-        depths: [S; 2],
-        among: u32,
-    ) -> u32
+    fn candidates<const W: usize>(&self, corners: &[[S; 3]; 3], depths: [S; 2], among: u32) -> u32
+    where
+        S: Lanes<W>,
+    {
+        self.see(corners).candidates(depths, among)
+    }
+
+    /// What the rays see of triangles, whose `corners` have their coordinates in the order `axes`.
+    #[inline(always)]
+    pub fn see<const W: usize>(&self, corners: &[[S; 3]; 3]) -> Seen<S>
     where
         S: Lanes<W>,
     {
         let a = self.shear(&corners[0]);
         let b = self.shear(&corners[1]);
         let c = self.shear(&corners[2]);
-        let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
-
+        let edges = [edge(c, b), edge(a, c), edge(b, a)];
+        let [u, v, w] = edges;
         let x = a[0].max_abs(b[0]).max_abs(c[0]);
         let y = a[1].max_abs(b[1]).max_abs(c[1]);
         let z = a[2].max_abs(b[2]).max_abs(c[2]);
@@ -155,15 +247,14 @@ impl<S> Filter<S> {
             .mul_add(S::splat(5.0 * UNIT_ROUNDOFF), r)
             .mul(S::splat(24.0 * UNIT_ROUNDOFF))
             .mul_add(r.add(z), S::splat(f32::MIN_POSITIVE));
-        let minus_error = S::splat(0.0).sub(error);
-        let (least, most) = (u.min(v).min(w), u.max(v).max(w));
-        let lanes = !(least.lt(minus_error) & error.lt(most)) & among;
-        if lanes == 0 {
-            return 0;
+        Seen {
+            edges,
+            depths: [a[2], b[2], c[2]],
+            least: u.min(v).min(w),
+            most: u.max(v).max(w),
+            error,
+            reach: z,
         }
-
-        let depth = Depth::new([u, v, w], [a[2], b[2], c[2]], error, z);
-        lanes & !depth.certainly_outside(depths)
     }
 
     /// A corner, moved so that the ray starts at the origin and sheared so

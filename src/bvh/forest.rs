@@ -3,12 +3,12 @@
 use super::build::build_over_boxes;
 use super::caster::{Caster, Window};
 use super::count::{Counter, Silent};
-use super::hit::{Hit, Search};
+use super::hit::{Hit, HitRow, Search};
 use super::layout::{ChildRef, Node};
 use super::simd::{Job, Lanes, Level, Run};
 use super::traverse::{Leaves, Stop, Walk};
 use super::tree::Bvh;
-use crate::math::{Aabb, DAffine3, DVec3, Ray, UNIT_ROUNDOFF, Vec3};
+use crate::math::{Aabb, DAffine3, DVec3, Ray, RayRow, UNIT_ROUNDOFF, Vec3};
 
 /// What rays are traced through: one tree as it is, or instances of several.
 #[derive(Debug)]
@@ -49,26 +49,28 @@ impl Tracer {
     }
 
     /// As [`Bvh::closest_hits`]; through instances rays go one by one.
-    pub fn closest_hits(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
+    pub fn closest_hits(&self, rays: &RayRow) -> HitRow {
         match self {
-            Self::Flat(tree) => tree.closest_hits(rays, hits),
+            Self::Flat(tree) => tree.closest_hits(rays),
             Self::Instanced(forest) => {
-                for (ray, hit) in rays.iter().zip(hits) {
-                    *hit = forest.closest_hit(ray);
+                let mut hits = HitRow::before(rays);
+                for i in 0..rays.count() {
+                    if let Some(hit) = forest.closest_hit(&rays.get(i)) {
+                        hits.set(i, &hit);
+                    }
                 }
+                hits
             }
         }
     }
 
     /// As [`Bvh::any_hits`]; through instances rays go one by one.
-    pub fn any_hits(&self, rays: &[Ray], blocked: &mut [bool]) {
+    pub fn any_hits(&self, rays: &RayRow) -> u64 {
         match self {
-            Self::Flat(tree) => tree.any_hits(rays, blocked),
-            Self::Instanced(forest) => {
-                for (ray, blocked) in rays.iter().zip(blocked) {
-                    *blocked = forest.any_hit(ray);
-                }
-            }
+            Self::Flat(tree) => tree.any_hits(rays),
+            Self::Instanced(forest) => (0..rays.count())
+                .map(|i| u64::from(forest.any_hit(&rays.get(i))) << i)
+                .fold(0, |all, one| all | one),
         }
     }
 

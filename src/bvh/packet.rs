@@ -1,63 +1,69 @@
-//! Packets: rays that run nearly the same way go through a tree together.
+//! Rays that run nearly the same way, in rows, and what each has found so far.
 //!
-//! The tree is walked once for all of them, by what their [`Beam`] may meet. At the leaves the beams of
-//! groups, as many rays as a vector holds, sort out triangles, and each that is left is tested against all rays
-//! of its group at once. Hits are those of single rays, bit for bit: the exact test decides here
-//! too.
+//! Most of what a ray meets is behind something else that it meets, so the exact test, which costs more than all else, is put off:
+//! a ray holds the nearest triangle that it is certain to hit ([`Certain`]), between bounds of its depth. Another one that
+//! is certain to be nearer takes its place; what is behind it for certain is passed by; and only
+//! where the bounds overlap, or where a crossing is not certain, the exact test decides at once. The
+//! triangles that are held in the end are tested for all rays at once. So hits are those of single rays, bit for
+//! bit. Rays that ask only whether there is any hit are done with the first that is certain.
 
-use super::beam::{Beam, BeamTest, Course, Interval};
-use super::caster::{AXES, first_depth, is_ordinary, last_depth, main_axis, turned};
-use super::filter::Filter;
-use super::hit::{Hit, Search, key};
-use super::layout::{Block, ChildRef, Tree};
-use super::simd::{Entry, Job, Lanes, Stack, prefetch};
-use super::traverse::nearest_child;
-use super::triangle::{ExactRay, ExactRays};
-use crate::math::Ray;
+use super::beam::{Beam, BeamTest, Course, Interval, bounds as bounds_of};
+use super::caster::{AXES, first_depth, is_ordinary, last_depth, leads, main_axis, turned};
+use super::filter::{Certain, Filter};
+use super::hit::{Hit, HitRow};
+use super::layout::{Block, Tree};
+use super::simd::Lanes;
+use super::triangle::{Corners, Crossings, ExactRay, ExactRays};
+use crate::math::{ROW, RayRow, Row, VectorRow};
 
 /// The most rays of a packet.
-pub(super) const SIZE: usize = 64;
+pub(super) const SIZE: usize = ROW;
 
-/// The most groups of a packet: of 8 rays.
-const GROUPS: usize = SIZE / 8;
-
-/// Slopes that differ by more are not traced together: the beam would hold much that no ray meets.
-const MOST_SPREAD: f32 = 0.25;
-
-/// Packets that have been to so many leaves and are not done are broken up: what the beam holds is too much of too small triangles.
-const MOST_LOOKS: usize = 12;
+/// More triangles than this that a group may meet are tested by ray, where fewer rays may meet the block.
+const MANY: u32 = 3;
 
 /// Of so many rays at a time, and fewer, each is tested by itself.
 const FEW: u32 = 2;
 
-/// One number for each ray.
-type PerRay = [f32; SIZE];
-
 /// Rays that have the main axis in common, coordinates in the order of the course's axes.
-struct Packet {
-    course: Course,
-    origin: [PerRay; 3],
-    direction: [PerRay; 3],
+///
+/// Depths are positions along the main axis from a ray's own origin; those that are said to be ahead
+/// are in the direction of the rays.
+pub(super) struct Packet<'a> {
+    pub course: Course,
+    origin: [Row; 3],
+    direction: [Row; 3],
     /// Slopes along the main axis, each rounded twice.
-    shear: [PerRay; 2],
+    shear: [Row; 2],
     /// Where hits still matter: least and greatest depth.
-    depth: [PerRay; 2],
+    depth: [Row; 2],
     /// Which of the two is the far end: 1 where the rays run towards higher coordinates.
     far_end: usize,
+    /// What is certain to be farther ahead is in the range of its ray.
+    begin: Row,
+    /// What is certain to be less far ahead is better than all that was found.
+    surely: Row,
+    /// The least parameters of the rays' ranges.
+    t_min: Row,
+    /// The triangles that are held, by their places in the blocks: block times width plus lane.
+    held: [u32; SIZE],
+    /// A bit for each ray that holds one.
+    holds: u64,
     /// A bit for each ray that still looks for something.
-    live: u64,
+    pub live: u64,
+    /// What the exact test found.
+    found: &'a mut HitRow,
 }
 
-impl Packet {
-    /// `None` where the rays do not have their main axis in common, or are extreme. `reach` is the largest coordinate
-    /// of the tree.
+impl<'a> Packet<'a> {
+    /// The rays of `rays`, which are to find what is better than `found`. `reach` is the largest coordinate of the tree.
     #[inline(always)]
-    fn gather(rays: &[Ray], reach: f32) -> Option<Self> {
-        let first = rays.first()?;
+    pub fn new(rays: &RayRow, found: &'a mut HitRow, reach: f32) -> Self {
+        let count = rays.count();
+        let first = rays.get(0);
         let main = main_axis(first.direction.to_array());
         let axes = AXES[main];
         let is_reversed = first.direction[main] < 0.0;
-        let far_end = usize::from(!is_reversed);
         let mut packet = Self {
             course: Course {
                 center: turned(first.origin.to_array(), axes),
@@ -65,50 +71,76 @@ impl Packet {
                 is_reversed,
                 size: reach,
             },
-            origin: [[0.0; SIZE]; 3],
-            direction: [[0.0; SIZE]; 3],
+            origin: turned_rows(&rays.origins, axes),
+            direction: turned_rows(&rays.directions, axes),
             shear: [[0.0; SIZE]; 2],
             depth: [[0.0; SIZE]; 2],
-            far_end,
-            live: u64::MAX >> (SIZE - rays.len().min(SIZE)),
+            far_end: usize::from(!is_reversed),
+            begin: [0.0; SIZE],
+            surely: [0.0; SIZE],
+            t_min: rays.t_min,
+            held: [0; SIZE],
+            holds: 0,
+            live: u64::MAX >> (SIZE - count),
+            found,
         };
-        let mut is_alike = true;
-        for i in 0..SIZE {
-            // The last ray stands for those that are not there.
-            let ray = &rays[i.min(rays.len() - 1)];
-            let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
-            is_alike &= (main_axis(direction) == main)
-                & ((direction[main] < 0.0) == is_reversed)
-                & is_ordinary(origin, direction[main], reach)
-                & ray.direction.is_finite()
-                & !ray.t_max.is_nan();
-            let (origin, direction) = (turned(origin, axes), turned(direction, axes));
+        // The first ray stands for those that are not there; they look nowhere.
+        for i in count..SIZE {
             for k in 0..3 {
-                packet.origin[k][i] = origin[k];
-                packet.direction[k][i] = direction[k];
+                packet.origin[k][i] = packet.origin[k][0];
+                packet.direction[k][i] = packet.direction[k][0];
             }
-            packet.depth[1 - far_end][i] = ray.t_min.max(0.0);
-            packet.depth[far_end][i] = ray.t_max;
+            packet.t_min[i] = 0.0;
+            packet.found.t[i] = 0.0;
         }
-        if !is_alike {
-            return None;
-        }
+        packet.measure();
+        packet
+    }
+
+    /// Whether all rays have the main axis in common and are far from all overflow.
+    #[inline(always)]
+    pub fn are_alike(&self, reach: f32) -> bool {
+        let Course {
+            axes, is_reversed, ..
+        } = self.course;
+        let main = axes[2];
+        let mut are_alike = true;
         for i in 0..SIZE {
-            let main = packet.direction[2][i];
-            let main_inverse = 1.0 / main;
-            packet.shear[0][i] = packet.direction[0][i] * main_inverse;
-            packet.shear[1][i] = packet.direction[1][i] * main_inverse;
-            packet.depth[1 - far_end][i] = first_depth(packet.depth[1 - far_end][i], main);
-            packet.depth[far_end][i] = last_depth(packet.depth[far_end][i], main);
+            let origin = [self.origin[0][i], self.origin[1][i], self.origin[2][i]];
+            let [x, y, z] = [self.direction[0][i], self.direction[1][i], self.direction[2][i]];
+            are_alike &= leads(main, [x, y, z])
+                & ((z < 0.0) == is_reversed)
+                & is_ordinary(origin, z, reach)
+                & !self.t_min[i].is_nan()
+                & !self.found.t[i].is_nan();
         }
-        // Those that are not there look nowhere.
-        packet.depth[far_end][rays.len().min(SIZE)..].fill(0.0);
-        Some(packet)
+        are_alike
+    }
+
+    /// Finds what follows from rays and ranges.
+    #[inline(always)]
+    fn measure(&mut self) {
+        let sign = if self.course.is_reversed { -1.0 } else { 1.0 };
+        let (mut least, mut most) = ([0.0; SIZE], [0.0; SIZE]);
+        for i in 0..SIZE {
+            let main = self.direction[2][i];
+            let main_inverse = 1.0 / main;
+            self.shear[0][i] = self.direction[0][i] * main_inverse;
+            self.shear[1][i] = self.direction[1][i] * main_inverse;
+            let t_min = if self.t_min[i] > 0.0 { self.t_min[i] } else { 0.0 };
+            self.t_min[i] = t_min;
+            least[i] = first_depth(t_min, main);
+            most[i] = last_depth(self.found.t[i], main);
+            self.begin[i] = sign * last_depth(t_min, main);
+            self.surely[i] = sign * first_depth(self.found.t[i], main);
+        }
+        self.depth[1 - self.far_end] = least;
+        self.depth[self.far_end] = most;
     }
 
     /// Around the rays of a group, and the largest coordinate of their origins.
     #[inline(always)]
-    fn beam<S: Lanes<W>, const W: usize>(&self, group: usize) -> (Beam, f32) {
+    pub fn beam<S: Lanes<W>, const W: usize>(&self, group: usize) -> (Beam, f32) {
         let [x, y, z] = &self.origin;
         let [x, y, z] = [row::<S, W>(x, group), row(y, group), row(z, group)];
         let [a, b, c] = self.course.center;
@@ -128,258 +160,432 @@ impl Packet {
 
     /// The depth behind which no ray of a group needs to look, in the direction of the rays.
     #[inline(always)]
-    fn far<S: Lanes<W>, const W: usize>(&self, group: usize) -> f32 {
+    pub fn far<S: Lanes<W>, const W: usize>(&self, group: usize) -> f32 {
         let ends = row::<S, W>(&self.depth[self.far_end], group);
         ends.max_abs(ends).greatest()
     }
 
     /// The rays of a group that still look for something, a bit for each.
     #[inline(always)]
-    fn live<const W: usize>(&self, group: usize) -> u32 {
+    pub fn live<const W: usize>(&self, group: usize) -> u32 {
         (self.live >> (group * W)) as u32 & (u32::MAX >> (32 - W))
+    }
+
+    /// Tests the rays of a group against triangles of a block; whether some found something. `bounds` are the
+    /// block's, for whoever needs them first to set.
+    #[inline(always)]
+    pub fn meet<S: Lanes<W>, const ANY: bool, const W: usize>(
+        &mut self,
+        tree: &Tree<W>,
+        place: usize,
+        triangles: u32,
+        group: usize,
+        bounds: &mut Option<[[f32; 2]; 3]>,
+    ) -> bool {
+        let count = triangles.count_ones();
+        if count > MANY {
+            let block = &tree.blocks[place];
+            let bounds = match bounds {
+                Some(known) => known,
+                None => bounds.insert(bounds_of::<S, W>(block)),
+            };
+            let rays = self.near::<S, W>(bounds, group);
+            if rays.count_ones() < count {
+                return self.meet_by_ray::<S, ANY, W>(tree, place, triangles, rays, group);
+            }
+        }
+        let mut is_found = false;
+        let mut rest = triangles;
+        while rest != 0 {
+            let lane = rest.trailing_zeros() as usize % W;
+            rest &= rest - 1;
+            is_found |= self.meet_one::<S, ANY, W>(tree, place, lane, group);
+        }
+        is_found
+    }
+
+    /// The rays of a group that may meet a box.
+    #[inline(always)]
+    fn near<S: Lanes<W>, const W: usize>(&self, bounds: &[[f32; 2]; 3], group: usize) -> u32 {
+        let [x, y, z] = &self.origin;
+        let [a, b, c] = self.course.center;
+        let origins = [
+            row::<S, W>(x, group).sub(S::splat(a)),
+            row::<S, W>(y, group).sub(S::splat(b)),
+            row::<S, W>(z, group).sub(S::splat(c)),
+        ];
+        let slopes = [row(&self.shear[0], group), row(&self.shear[1], group)];
+        let far = row::<S, W>(&self.depth[self.far_end], group);
+        let test = BeamTest::of_rays(&self.course, origins, slopes);
+        self.live::<W>(group) & test.rays(bounds, far.max_abs(far))
+    }
+
+    /// Tests some rays of a group, one by one, against triangles of a block.
+    #[inline(always)]
+    fn meet_by_ray<S: Lanes<W>, const ANY: bool, const W: usize>(
+        &mut self,
+        tree: &Tree<W>,
+        place: usize,
+        triangles: u32,
+        mut rays: u32,
+        group: usize,
+    ) -> bool {
+        let block = &tree.blocks[place];
+        let [x, y, z] = self.course.axes;
+        let [a, b, c] = &block.corners;
+        let corners = [
+            [S::load(&a[x]), S::load(&a[y]), S::load(&a[z])],
+            [S::load(&b[x]), S::load(&b[y]), S::load(&b[z])],
+            [S::load(&c[x]), S::load(&c[y]), S::load(&c[z])],
+        ];
+        let mut is_found = false;
+        while rays != 0 {
+            let lane = rays.trailing_zeros() as usize % W;
+            rays &= rays - 1;
+            let i = group * W + lane;
+            let filter = Filter {
+                axes: self.course.axes,
+                origin: [
+                    S::splat(self.origin[0][i]),
+                    S::splat(self.origin[1][i]),
+                    S::splat(self.origin[2][i]),
+                ],
+                shear: [S::splat(self.shear[0][i]), S::splat(self.shear[1][i])],
+            };
+            let depths = [S::splat(self.depth[0][i]), S::splat(self.depth[1][i])];
+            let seen = filter.see(&corners);
+            let lanes = seen.candidates(depths, triangles);
+            if lanes == 0 {
+                continue;
+            }
+            let certain = seen.certain(self.course.is_reversed);
+            let sure = lanes & certain.lanes & S::splat(self.begin[i]).lt(certain.near);
+            let mut doubtful = lanes & !sure;
+            is_found |= if ANY {
+                let sure = sure & certain.far.lt(S::splat(self.surely[i]));
+                doubtful = lanes & !sure;
+                if sure != 0 {
+                    self.end(1 << i);
+                    true
+                } else {
+                    false
+                }
+            } else {
+                self.hold_nearest(&certain, sure, &mut doubtful, i, place)
+            };
+            if doubtful != 0 && self.live >> i & 1 != 0 {
+                is_found |= self.look_at::<ANY, W>(tree, place, doubtful, i);
+            }
+        }
+        is_found
+    }
+
+    /// Lets ray `i` hold the nearest of the triangles `sure` of a block; those that are too close to another one to tell
+    /// are `doubtful`.
+    #[inline(always)]
+    fn hold_nearest<S: Lanes<W>, const W: usize>(
+        &mut self,
+        certain: &Certain<S>,
+        mut sure: u32,
+        doubtful: &mut u32,
+        i: usize,
+        place: usize,
+    ) -> bool {
+        if sure == 0 {
+            return false;
+        }
+        let (mut near, mut far) = ([0.0; W], [0.0; W]);
+        certain.near.store(&mut near);
+        certain.far.store(&mut far);
+        let mut is_found = false;
+        while sure != 0 {
+            let lane = sure.trailing_zeros() as usize % W;
+            sure &= sure - 1;
+            if far[lane] < self.surely[i] {
+                self.holds |= 1 << i;
+                self.held[i] = (place * W + lane) as u32;
+                self.surely[i] = near[lane];
+                self.depth[self.far_end][i] = self.ahead(far[lane]);
+                is_found = true;
+            } else if near[lane] <= self.ahead(self.depth[self.far_end][i]) {
+                *doubtful |= 1 << lane;
+            }
+        }
+        is_found
+    }
+
+    /// Tests the rays of a group against the triangle in a lane of a block; whether some found something.
+    #[inline(always)]
+    fn meet_one<S: Lanes<W>, const ANY: bool, const W: usize>(
+        &mut self,
+        tree: &Tree<W>,
+        place: usize,
+        lane: usize,
+        group: usize,
+    ) -> bool {
+        let block = &tree.blocks[place];
+        let corners = block.corners_of(lane, self.course.axes);
+        let [a, b, c] = &corners;
+        let [x, y, z] = &self.origin;
+        let filter = Filter {
+            axes: self.course.axes,
+            origin: [row(x, group), row(y, group), row(z, group)],
+            shear: [row(&self.shear[0], group), row(&self.shear[1], group)],
+        };
+        let depths = [row(&self.depth[0], group), row(&self.depth[1], group)];
+        let vectors = [splat::<S, W>(a), splat(b), splat(c)];
+        let seen = filter.see(&vectors);
+        let lanes = seen.candidates(depths, self.live::<W>(group));
+        if lanes == 0 {
+            return false;
+        }
+        let certain = seen.certain(self.course.is_reversed);
+        let sure = lanes
+            & certain.lanes
+            & row::<S, W>(&self.begin, group).lt(certain.near)
+            & certain.far.lt(row(&self.surely, group));
+        let mut is_found = sure != 0;
+        if ANY {
+            self.end(u64::from(sure) << (group * W));
+        } else {
+            self.hold(&certain, sure, group, (place * W + lane) as u32);
+        }
+        let doubtful = lanes & !sure;
+        if doubtful != 0 {
+            let triangle = block.triangles[lane];
+            is_found |= self.decide::<ANY, W>(tree, &corners, triangle, group, doubtful);
+        }
+        is_found
+    }
+
+    /// Ends the search of some rays.
+    #[inline(always)]
+    fn end(&mut self, mut rays: u64) {
+        self.live &= !rays;
+        self.found.is_hit |= rays;
+        while rays != 0 {
+            self.depth[self.far_end][rays.trailing_zeros() as usize % SIZE] = 0.0;
+            rays &= rays - 1;
+        }
+    }
+
+    /// Lets the rays `lanes` of a group hold a triangle.
+    #[inline(always)]
+    fn hold<S: Lanes<W>, const W: usize>(
+        &mut self,
+        certain: &Certain<S>,
+        mut lanes: u32,
+        group: usize,
+        triangle: u32,
+    ) {
+        let (mut near, mut far) = ([0.0; W], [0.0; W]);
+        certain.near.store(&mut near);
+        certain.far.store(&mut far);
+        self.holds |= u64::from(lanes) << (group * W);
+        while lanes != 0 {
+            let lane = lanes.trailing_zeros() as usize % W;
+            lanes &= lanes - 1;
+            let i = group * W + lane;
+            self.held[i] = triangle;
+            self.surely[i] = near[lane];
+            self.depth[self.far_end][i] = self.ahead(far[lane]);
+        }
+    }
+
+    /// From a depth to one that is ahead, and back.
+    #[inline(always)]
+    fn ahead(&self, depth: f32) -> f32 {
+        if self.course.is_reversed {
+            -depth
+        } else {
+            depth
+        }
+    }
+
+    /// The exact test of one triangle for the rays `lanes` of a group; whether some found something better.
+    #[inline(always)]
+    fn decide<const ANY: bool, const W: usize>(
+        &mut self,
+        tree: &Tree<W>,
+        corners: &[[f32; 3]; 3],
+        triangle: u32,
+        group: usize,
+        lanes: u32,
+    ) -> bool {
+        self.settle(tree, self.holds & u64::from(lanes) << (group * W));
+        if lanes.count_ones() <= FEW {
+            return self.look::<ANY, W>(corners, triangle, group, lanes);
+        }
+        let [a, b, c] = corners;
+        let crossings = self.cross::<W>(&[all(a), all(b), all(c)], group);
+        let mut is_found = false;
+        let mut hits = lanes & crossings.is_hit;
+        while hits != 0 {
+            let lane = hits.trailing_zeros() as usize % W;
+            hits &= hits - 1;
+            let hit = Hit::of(crossings.get(lane), 0, triangle);
+            is_found |= self.keep::<ANY>(group * W + lane, &hit);
+        }
+        is_found | self.look::<ANY, W>(corners, triangle, group, lanes & crossings.is_delicate)
+    }
+
+    /// The exact test of one triangle for the rays `lanes` of a group, one by one; whether some found something better.
+    #[inline(never)]
+    fn look<const ANY: bool, const W: usize>(
+        &mut self,
+        corners: &[[f32; 3]; 3],
+        triangle: u32,
+        group: usize,
+        mut lanes: u32,
+    ) -> bool {
+        let mut is_found = false;
+        while lanes != 0 {
+            let i = group * W + lanes.trailing_zeros() as usize % W;
+            lanes &= lanes - 1;
+            if let Some(crossing) = self.exact(i).cross(corners) {
+                is_found |= self.keep::<ANY>(i, &Hit::of(crossing, 0, triangle));
+            }
+        }
+        is_found
+    }
+
+    /// The exact test of some triangles of a block for ray `i`; whether it found something better.
+    #[inline(never)]
+    fn look_at<const ANY: bool, const W: usize>(
+        &mut self,
+        tree: &Tree<W>,
+        place: usize,
+        mut triangles: u32,
+        i: usize,
+    ) -> bool {
+        self.settle(tree, self.holds & 1 << i);
+        let block = &tree.blocks[place];
+        let mut is_found = false;
+        while triangles != 0 {
+            let lane = triangles.trailing_zeros() as usize % W;
+            triangles &= triangles - 1;
+            let corners = block.corners_of(lane, self.course.axes);
+            if let Some(crossing) = self.exact(i).cross(&corners) {
+                is_found |= self.keep::<ANY>(i, &Hit::of(crossing, 0, block.triangles[lane]));
+            }
+        }
+        is_found
     }
 
     #[inline(always)]
     fn exact(&self, i: usize) -> ExactRay {
-        let of = |rows: &[PerRay; 3]| [rows[0][i], rows[1][i], rows[2][i]];
+        let of = |rows: &[Row; 3]| [rows[0][i], rows[1][i], rows[2][i]];
         ExactRay::new(of(&self.origin), of(&self.direction))
+    }
+
+    /// The exact test of a triangle for each ray of a group.
+    #[inline(always)]
+    fn cross<const W: usize>(&self, corners: &Corners<W>, group: usize) -> Crossings<W> {
+        let [ox, oy, oz] = &self.origin;
+        let [dx, dy, dz] = &self.direction;
+        let rays = ExactRays::<W> {
+            origin: [array(ox, group), array(oy, group), array(oz, group)],
+            direction: [array(dx, group), array(dy, group), array(dz, group)],
+        };
+        rays.cross(corners)
     }
 
     /// Keeps `hit` of ray `i` where it is better than what that has; whether it is.
     #[inline(always)]
-    fn keep<const ANY: bool>(&mut self, i: usize, search: &mut Search, hit: Hit) -> bool {
-        if !search.is_better(hit.t, key(0, hit.triangle)) {
-            return false;
+    fn keep<const ANY: bool>(&mut self, i: usize, hit: &Hit) -> bool {
+        let best = self.found.t[i];
+        let is_better = hit.t > self.t_min[i]
+            && (hit.t < best || (hit.t == best && hit.triangle < self.found.triangle[i]));
+        if is_better && ANY {
+            self.end(1 << i);
+        } else if is_better {
+            self.found.set(i, hit);
+            let main = self.direction[2][i];
+            self.surely[i] = self.ahead(first_depth(hit.t, main));
+            self.depth[self.far_end][i] = last_depth(hit.t, main);
         }
-        search.keep(hit);
-        self.depth[self.far_end][i] = if ANY {
-            self.live &= !(1 << i);
-            0.0
-        } else {
-            last_depth(hit.t, self.direction[2][i])
-        };
-        true
+        is_better
+    }
+
+    /// The exact test of what each of `rays` holds.
+    #[inline(never)]
+    fn settle<const W: usize>(&mut self, tree: &Tree<W>, mut rays: u64) {
+        self.holds &= !rays;
+        while rays != 0 {
+            let i = rays.trailing_zeros() as usize % SIZE;
+            rays &= rays - 1;
+            let (block, lane) = self.place::<W>(tree, i);
+            let corners = block.corners_of(lane, self.course.axes);
+            if let Some(crossing) = self.exact(i).cross(&corners) {
+                self.keep::<false>(i, &Hit::of(crossing, 0, block.triangles[lane]));
+            }
+        }
+    }
+
+    /// The exact test of what all rays hold.
+    #[inline(always)]
+    pub fn settle_all<const W: usize>(&mut self, tree: &Tree<W>, groups: usize) {
+        for group in 0..groups {
+            let held = (self.holds >> (group * W)) as u32 & (u32::MAX >> (32 - W));
+            if held.count_ones() <= FEW {
+                self.settle(tree, u64::from(held) << (group * W));
+                continue;
+            }
+            let mut corners = [[[0.0; W]; 3]; 3];
+            for lane in 0..W {
+                let (block, place) = self.place::<W>(tree, group * W + lane);
+                let points = block.corners_of(place, self.course.axes);
+                for corner in 0..3 {
+                    for axis in 0..3 {
+                        corners[corner][axis][lane] = points[corner][axis];
+                    }
+                }
+            }
+            let crossings = self.cross::<W>(&corners, group);
+            debug_assert_eq!(held & !crossings.is_hit, 0, "what is certain is hit");
+            for lane in 0..W {
+                let i = group * W + lane;
+                if held >> lane & 1 != 0 {
+                    let (block, place) = self.place(tree, i);
+                    let hit = Hit::of(crossings.get(lane), 0, block.triangles[place]);
+                    self.found.set(i, &hit);
+                }
+            }
+        }
+        self.holds = 0;
+    }
+
+    /// Block and lane of what ray `i` holds.
+    #[inline(always)]
+    fn place<'t, const W: usize>(&self, tree: &'t Tree<W>, i: usize) -> (&'t Block<W>, usize) {
+        let place = self.held[i] as usize;
+        (&tree.blocks[place / W], place % W)
     }
 }
 
 /// A vector of one number for each ray of a group.
 #[inline(always)]
-fn row<S: Lanes<W>, const W: usize>(row: &PerRay, group: usize) -> S {
+fn row<S: Lanes<W>, const W: usize>(row: &Row, group: usize) -> S {
     S::load(array(row, group))
 }
 
 #[inline(always)]
-fn array<const W: usize>(row: &PerRay, group: usize) -> &[f32; W] {
+fn array<const W: usize>(row: &Row, group: usize) -> &[f32; W] {
     &row.as_chunks::<W>().0[group]
 }
 
-/// The way of some rays through a tree, to be compiled for each kind of vectors.
-///
-/// With `ANY` each ray's first hit, wherever it is, ends its search. Returns the rays whose search is to be gone on with
-/// one by one, a bit for each: all of them where they do not run the same way.
-pub(super) struct Trace<'a, const ANY: bool, const W: usize> {
-    pub tree: &'a Tree<W>,
-    /// Largest coordinate of the tree.
-    pub reach: f32,
-    /// At most [`SIZE`].
-    pub rays: &'a [Ray],
-    /// One for each ray.
-    pub searches: &'a mut [Search],
-}
-
-impl<const ANY: bool, const W: usize> Job<W> for Trace<'_, ANY, W> {
-    type Output = u64;
-
-    #[inline(always)]
-    fn run<S: Lanes<W>>(self) -> u64 {
-        let Self {
-            tree,
-            reach,
-            rays,
-            searches,
-        } = self;
-        let Some(mut packet) = Packet::gather(rays, reach) else {
-            return u64::MAX;
-        };
-        let groups = rays.len().div_ceil(W);
-        let (mut all, size) = packet.beam::<S, W>(0);
-        let mut beams = [all; GROUPS];
-        packet.course.size = if size > reach { size } else { reach };
-        for (group, kept) in beams.iter_mut().enumerate().take(groups).skip(1) {
-            let (beam, size) = packet.beam::<S, W>(group);
-            all = all.union(&beam);
-            *kept = beam;
-            if size > packet.course.size {
-                packet.course.size = size;
-            }
-        }
-        let is_narrow = all.slopes[0].high - all.slopes[0].low <= MOST_SPREAD
-            && all.slopes[1].high - all.slopes[1].low <= MOST_SPREAD;
-        if !is_narrow {
-            return packet.live;
-        }
-
-        for beam in &mut beams {
-            *beam = beam.widened(&packet.course);
-        }
-        let beam = BeamTest::<S>::new(&packet.course, &all.widened(&packet.course));
-        let mut fars = [0.0; GROUPS];
-        for (group, far) in fars.iter_mut().enumerate().take(groups) {
-            *far = packet.far::<S, W>(group);
-        }
-        let mut far = greatest(&fars);
-        let mut looks = 0;
-        let mut stack = Stack::new();
-        stack.push(Entry::new(0.0, ChildRef::node(0)));
-        while let Some(entry) = stack.pop() {
-            if entry.distance() > far {
-                continue;
-            }
-            let mut current = entry.child();
-            while !current.is_leaf() {
-                let node = &tree.nodes[current.index()];
-                let (mask, enter) = beam.children(node, S::splat(far));
-                let announce = |entry: Entry| match entry.child() {
-                    leaf if leaf.is_leaf() => prefetch(&tree.blocks, leaf.index()),
-                    child => prefetch(&tree.nodes, child.index()),
-                };
-                match nearest_child::<S, false, W>(node, mask, enter, &mut stack, announce) {
-                    Some(child) => current = child,
-                    None => break,
-                }
-            }
-            if !current.is_leaf() {
-                continue;
-            }
-            let block = &tree.blocks[current.index()];
-            let there = u32::MAX >> (32 - current.count());
-            for group in 0..groups {
-                if packet.live::<W>(group) == 0 {
-                    continue;
-                }
-                let test = BeamTest::<S>::new(&packet.course, &beams[group]);
-                let mut triangles = there & test.triangles(block, S::splat(fars[group]));
-                let mut is_found = false;
-                while triangles != 0 {
-                    let lane = triangles.trailing_zeros() as usize % W;
-                    triangles &= triangles - 1;
-                    is_found |= meet::<S, ANY, W>(&mut packet, searches, block, lane, group);
-                }
-                if is_found {
-                    fars[group] = packet.far::<S, W>(group);
-                    far = greatest(&fars);
-                }
-            }
-            if ANY && packet.live == 0 {
-                return 0;
-            }
-            looks += 1;
-            if looks > MOST_LOOKS {
-                return packet.live;
-            }
-        }
-        0
-    }
-}
-
 #[inline(always)]
-fn greatest(fars: &[f32; GROUPS]) -> f32 {
-    let mut greatest = 0.0;
-    for &far in fars {
-        if far > greatest {
-            greatest = far;
-        }
-    }
-    greatest
+fn turned_rows(rows: &VectorRow, axes: [usize; 3]) -> [Row; 3] {
+    [rows.0[axes[0]], rows.0[axes[1]], rows.0[axes[2]]]
 }
 
-/// Tests the rays of a group against one triangle; whether some found something.
+/// The same point for each ray of a group, by axis.
 #[inline(always)]
-fn meet<S: Lanes<W>, const ANY: bool, const W: usize>(
-    packet: &mut Packet,
-    searches: &mut [Search],
-    block: &Block<W>,
-    lane: usize,
-    group: usize,
-) -> bool {
-    let corners = block.corners_of(lane, packet.course.axes);
-    let [a, b, c] = &corners;
-    let [x, y, z] = &packet.origin;
-    let filter = Filter {
-        axes: packet.course.axes,
-        origin: [row(x, group), row(y, group), row(z, group)],
-        shear: [row(&packet.shear[0], group), row(&packet.shear[1], group)],
-    };
-    let depths = [row(&packet.depth[0], group), row(&packet.depth[1], group)];
-    let vectors = [splat::<S, W>(a), splat(b), splat(c)];
-    let lanes = filter.candidates(&vectors, depths, packet.live::<W>(group));
-    if lanes == 0 {
-        return false;
-    }
-    let triangle = block.triangles[lane];
-    if lanes.count_ones() <= FEW {
-        return decide_one_by_one::<ANY>(packet, searches, &corners, triangle, group * W, lanes);
-    }
-    let [ox, oy, oz] = &packet.origin;
-    let [dx, dy, dz] = &packet.direction;
-    let rays = ExactRays::<W> {
-        origin: [array(ox, group), array(oy, group), array(oz, group)],
-        direction: [array(dx, group), array(dy, group), array(dz, group)],
-    };
-    let crossings = rays.cross(&corners);
-    let mut found = false;
-    let mut hits = lanes & crossings.is_hit;
-    while hits != 0 {
-        let lane = hits.trailing_zeros() as usize % W;
-        hits &= hits - 1;
-        let i = group * W + lane;
-        let hit = Hit {
-            t: crossings.t[lane],
-            u: crossings.u[lane],
-            v: crossings.v[lane],
-            triangle,
-            instance: 0,
-        };
-        found |= packet.keep::<ANY>(i, &mut searches[i], hit);
-    }
-    let delicate = lanes & crossings.is_delicate;
-    if delicate != 0 {
-        found |=
-            decide_one_by_one::<ANY>(packet, searches, &corners, triangle, group * W, delicate);
-    }
-    found
+fn all<const W: usize>(point: &[f32; 3]) -> [[f32; W]; 3] {
+    [[point[0]; W], [point[1]; W], [point[2]; W]]
 }
 
 #[inline(always)]
 fn splat<S: Lanes<W>, const W: usize>(point: &[f32; 3]) -> [S; 3] {
     [S::splat(point[0]), S::splat(point[1]), S::splat(point[2])]
-}
-
-/// The exact test of one triangle for the rays `first` plus each of `lanes`.
-#[inline(never)]
-fn decide_one_by_one<const ANY: bool>(
-    packet: &mut Packet,
-    searches: &mut [Search],
-    corners: &[[f32; 3]; 3],
-    triangle: u32,
-    first: usize,
-    mut lanes: u32,
-) -> bool {
-    let mut found = false;
-    while lanes != 0 {
-        let i = first + lanes.trailing_zeros() as usize;
-        lanes &= lanes - 1;
-        let Some(crossing) = packet.exact(i).cross(corners) else {
-            continue;
-        };
-        let hit = Hit {
-            t: crossing.t,
-            u: crossing.u,
-            v: crossing.v,
-            triangle,
-            instance: 0,
-        };
-        found |= packet.keep::<ANY>(i, &mut searches[i], hit);
-    }
-    found
 }

@@ -4,13 +4,13 @@ use super::build::{Builder, build};
 use super::caster::{Caster, Window};
 use super::count::{Counter, Silent, TraversalCounts};
 use super::filter::Filter;
-use super::hit::{Hit, Search, key};
+use super::hit::{Hit, HitRow, Search, key};
 use super::layout::{Block, ChildRef, Node, Tree};
-use super::packet::{SIZE, Trace};
 use super::simd::{Job, Lanes, Level, Run, prefetch};
 use super::stats::TreeStats;
+use super::together::Together;
 use super::traverse::{Leaves, Stop, Walk};
-use crate::math::{Aabb, Ray, Vec3};
+use crate::math::{Aabb, ROW, Ray, RayRow, Vec3};
 
 /// Which vectors a tree is laid out for and traced with. Hits are the same with all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -129,37 +129,35 @@ impl Bvh {
         self.search::<true, _>(ray, &accept, &mut Silent).is_some()
     }
 
-    /// [`Bvh::closest_hit`] of each of `rays`, into `hits`, which is as long.
+    /// [`Bvh::closest_hit`] of each of `rays`.
     ///
-    /// Quicker than one by one where neighbours in `rays` run nearly the same way.
-    pub fn closest_hits(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
-        self.search_all::<false>(rays, |i, hit| hits[i] = hit);
+    /// Quicker than one by one where they run nearly the same way.
+    pub fn closest_hits(&self, rays: &RayRow) -> HitRow {
+        self.search_row::<false>(rays)
     }
 
-    /// [`Bvh::any_hit`] of each of `rays`, into `blocked`, which is as long. As for [`Bvh::closest_hits`].
-    pub fn any_hits(&self, rays: &[Ray], blocked: &mut [bool]) {
-        self.search_all::<true>(rays, |i, hit| blocked[i] = hit.is_some());
+    /// [`Bvh::any_hit`] of each of `rays`, a bit for each. As for [`Bvh::closest_hits`].
+    pub fn any_hits(&self, rays: &RayRow) -> u64 {
+        self.search_row::<true>(rays).is_hit
     }
 
-    fn search_all<const ANY: bool>(&self, rays: &[Ray], mut found: impl FnMut(usize, Option<Hit>)) {
-        for (number, rays) in rays.chunks(SIZE).enumerate() {
-            let first = number * SIZE;
-            let mut searches = [const { Search::NOWHERE }; SIZE];
-            for (search, ray) in searches.iter_mut().zip(rays) {
-                *search = Search::new(ray.t_min, ray.t_max);
-            }
-            let mut rest = match &self.body {
-                Body::Eight(tree) => self.search_together::<ANY, 8>(tree, rays, &mut searches),
-                Body::Sixteen(tree) => self.search_together::<ANY, 16>(tree, rays, &mut searches),
-            };
-            for (i, (ray, search)) in rays.iter().zip(&mut searches).enumerate() {
-                if rest & 1 != 0 {
-                    self.cast::<ANY, _>(ray, search, 0, &|_: &Hit| true, &mut Silent);
-                }
-                rest >>= 1;
-                found(first + i, search.hit);
+    fn search_row<const ANY: bool>(&self, rays: &RayRow) -> HitRow {
+        let mut hits = HitRow::before(rays);
+        let mut rest = match &self.body {
+            Body::Eight(tree) => self.search_together::<ANY, 8>(tree, rays, &mut hits),
+            Body::Sixteen(tree) => self.search_together::<ANY, 16>(tree, rays, &mut hits),
+        };
+        while rest != 0 {
+            let i = rest.trailing_zeros() as usize;
+            rest &= rest - 1;
+            let ray = rays.get(i);
+            let mut search = Search::beyond(&ray, hits.get(i));
+            self.cast::<ANY, _>(&ray, &mut search, 0, &|_: &Hit| true, &mut Silent);
+            if let Some(hit) = &search.hit {
+                hits.set(i, hit);
             }
         }
+        hits
     }
 
     /// The rays whose search is to be gone on with one by one, a bit for each.
@@ -167,21 +165,23 @@ impl Bvh {
     fn search_together<const ANY: bool, const W: usize>(
         &self,
         tree: &Tree<W>,
-        rays: &[Ray],
-        searches: &mut [Search],
+        rays: &RayRow,
+        found: &mut HitRow,
     ) -> u64
     where
         Level: Run<W>,
     {
-        if tree.nodes.is_empty() || rays.len() < LEAST_TOGETHER {
-            return u64::MAX;
+        let there = u64::MAX.checked_shr((ROW - rays.count()) as u32).unwrap_or(0);
+        if tree.nodes.is_empty() || rays.count() < LEAST_TOGETHER {
+            return there;
         }
-        self.level.run(Trace::<ANY, W> {
+        let job = Together::<ANY, W> {
             tree,
             reach: self.reach,
             rays,
-            searches,
-        })
+            found,
+        };
+        there & self.level.run(job)
     }
 
     /// [`Bvh::closest_hit`], adding to `counts` what it looked at.
@@ -322,13 +322,7 @@ fn search_lanes<const ANY: bool, const W: usize>(
         if !search.is_better(crossing.t, key(instance, triangle)) {
             continue;
         }
-        let hit = Hit {
-            t: crossing.t,
-            u: crossing.u,
-            v: crossing.v,
-            triangle,
-            instance,
-        };
+        let hit = Hit::of(crossing, instance, triangle);
         if accept(&hit) {
             search.keep(hit);
             if ANY {

@@ -131,6 +131,9 @@ impl ExactRay {
     }
 }
 
+/// Corners of `W` triangles: by corner, by axis, by triangle.
+pub(super) type Corners<const W: usize> = [[[f32; W]; 3]; 3];
+
 /// [`ExactRay::cross`] for `W` rays at once, each with the same result, bit for bit.
 pub(super) struct ExactRays<'a, const W: usize> {
     /// As in [`ExactRay::new`], by axis and by ray.
@@ -150,16 +153,32 @@ pub(super) struct Crossings<const W: usize> {
     pub is_delicate: u32,
 }
 
-impl<const W: usize> ExactRays<'_, W> {
-    /// Where the rays cross the triangle with these corners.
+impl<const W: usize> Crossings<W> {
+    /// Of ray `i`.
     #[inline(always)]
-    pub fn cross(&self, corners: &[[f32; 3]; 3]) -> Crossings<W> {
-        let [a, b, c] = corners;
+    pub fn get(&self, i: usize) -> Crossing {
+        Crossing {
+            t: self.t[i],
+            u: self.u[i],
+            v: self.v[i],
+        }
+    }
+}
+
+impl<const W: usize> ExactRays<'_, W> {
+    /// Where each ray crosses the triangle with its corners.
+    #[inline(always)]
+    pub fn cross(&self, corners: &Corners<W>) -> Crossings<W> {
         let (mut t, mut u, mut v) = ([0.0; W], [0.0; W], [0.0; W]);
         let (mut hit, mut delicate) = ([0u32; W], [0u32; W]);
         // One straight run of arithmetic without a branch or a call, which compiles to vectors. It is what
         // `ExactRay` does, in the same order.
         for i in 0..W {
+            let [a, b, c] = [
+                [corners[0][0][i], corners[0][1][i], corners[0][2][i]],
+                [corners[1][0][i], corners[1][1][i], corners[1][2][i]],
+                [corners[2][0][i], corners[2][1][i], corners[2][2][i]],
+            ];
             let (ox, oy, oz) = (
                 f64::from(self.origin[0][i]),
                 f64::from(self.origin[1][i]),

@@ -7,6 +7,8 @@
 use glam::Vec3;
 use pulp::Arch;
 
+use super::Ray;
+
 /// Something to be compiled for each instruction set: its `call` must be `#[inline(always)]`, and so must be
 /// what that calls. It writes to rows of its own, which it returns: the compiler knows that nothing else
 /// reads them meanwhile.
@@ -44,6 +46,72 @@ impl VectorRow {
     pub fn set(&mut self, i: usize, v: Vec3) {
         let [x, y, z] = &mut self.0;
         (x[i], y[i], z[i]) = (v.x, v.y, v.z);
+    }
+}
+
+/// Up to [`ROW`] rays.
+#[derive(Clone, Copy, Debug)]
+pub struct RayRow {
+    /// Where they start.
+    pub origins: VectorRow,
+    /// Where they go.
+    pub directions: VectorRow,
+    /// As of [`Ray`].
+    pub t_min: Row,
+    /// As of [`Ray`].
+    pub t_max: Row,
+    count: usize,
+}
+
+impl RayRow {
+    /// No rays.
+    pub const EMPTY: Self = Self {
+        origins: VectorRow::ZERO,
+        directions: VectorRow::ZERO,
+        t_min: [0.0; ROW],
+        t_max: [0.0; ROW],
+        count: 0,
+    };
+
+    /// How many there are.
+    #[inline(always)]
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Adds a ray; there must be room.
+    #[inline(always)]
+    pub fn push(&mut self, ray: &Ray) {
+        let i = self.count;
+        self.origins.set(i, ray.origin);
+        self.directions.set(i, ray.direction);
+        self.t_min[i] = ray.t_min;
+        self.t_max[i] = ray.t_max;
+        self.count += 1;
+    }
+
+    /// Ray `i`.
+    #[inline(always)]
+    pub fn get(&self, i: usize) -> Ray {
+        Ray {
+            origin: self.origins.get(i),
+            direction: self.directions.get(i),
+            t_min: self.t_min[i],
+            t_max: self.t_max[i],
+        }
+    }
+
+    /// Takes all rays out.
+    pub fn clear(&mut self) {
+        self.count = 0;
+    }
+}
+
+impl<'a> FromIterator<&'a Ray> for RayRow {
+    fn from_iter<I: IntoIterator<Item = &'a Ray>>(rays: I) -> Self {
+        let mut row = Self::EMPTY;
+        rays.into_iter().for_each(|ray| row.push(ray));
+        row
     }
 }
 

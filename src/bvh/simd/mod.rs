@@ -33,6 +33,8 @@ pub(super) trait Lanes<const W: usize>: Copy {
     fn add(self, other: Self) -> Self;
     /// `self * other`.
     fn mul(self, other: Self) -> Self;
+    /// `self / other`.
+    fn div(self, other: Self) -> Self;
     /// `self * factor + addend`, rounded once or twice.
     fn mul_add(self, factor: Self, addend: Self) -> Self;
     /// `self * factor - subtrahend`, rounded once or twice.

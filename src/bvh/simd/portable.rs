@@ -52,6 +52,10 @@ impl<const W: usize> Lanes<W> for Portable<W> {
         self.zip(other, |x, y| x * y)
     }
     #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        self.zip(other, |x, y| x / y)
+    }
+    #[inline(always)]
     fn mul_add(self, factor: Self, addend: Self) -> Self {
         self.mul(factor).add(addend)
     }

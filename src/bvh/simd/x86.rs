@@ -48,7 +48,7 @@ struct Avx512(__m512);
 /// The functions whose names and shapes are the same in both sets.
 macro_rules! lanes {
     ($type:ident, $width:literal, $set1:ident, $load:ident, $store:ident, $sub:ident, $add:ident,
-     $mul:ident, $fmadd:ident, $fmsub:ident, $fnmadd:ident, $min:ident, $max:ident,
+     $mul:ident, $div:ident, $fmadd:ident, $fmsub:ident, $fnmadd:ident, $min:ident, $max:ident,
      $max_abs:ident, $flip:ident, $least:ident, $greatest:ident, $compare:ident) => {
         // SAFETY (of all blocks in here): a value of this type exists only where `run_avx2` or
         // `run_avx512` called the job, hence on a processor that has the instructions; loads
@@ -77,6 +77,10 @@ macro_rules! lanes {
             #[inline(always)]
             fn mul(self, other: Self) -> Self {
                 Self(unsafe { $mul(self.0, other.0) })
+            }
+            #[inline(always)]
+            fn div(self, other: Self) -> Self {
+                Self(unsafe { $div(self.0, other.0) })
             }
             #[inline(always)]
             fn mul_add(self, factor: Self, addend: Self) -> Self {
@@ -135,6 +139,7 @@ lanes!(
     _mm256_sub_ps,
     _mm256_add_ps,
     _mm256_mul_ps,
+    _mm256_div_ps,
     _mm256_fmadd_ps,
     _mm256_fmsub_ps,
     _mm256_fnmadd_ps,
@@ -156,6 +161,7 @@ lanes!(
     _mm512_sub_ps,
     _mm512_add_ps,
     _mm512_mul_ps,
+    _mm512_div_ps,
     _mm512_fmadd_ps,
     _mm512_fmsub_ps,
     _mm512_fnmadd_ps,
