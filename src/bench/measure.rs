@@ -8,7 +8,7 @@ use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use serde::Serialize;
 
 use crate::bvh::{Builder, Bvh, TraversalCounts, Width};
-use crate::math::Ray;
+use crate::math::{ROW, Ray};
 
 use super::{Elapsed, Query, RaySet, Stopwatch, Timing, Triangles};
 
@@ -218,14 +218,14 @@ fn trace(tree: &Bvh, set: &RaySet, together: bool) -> Elapsed {
             black_box(tree.any_hit(ray));
         }),
         (Query::Closest, true) => {
-            let mut hits = vec![None; rays.len()];
-            tree.closest_hits(rays, &mut hits);
-            black_box(hits);
+            for row in rays.chunks(ROW) {
+                black_box(tree.closest_hits(&row.iter().collect()));
+            }
         }
         (Query::Any, true) => {
-            let mut blocked = vec![false; rays.len()];
-            tree.any_hits(rays, &mut blocked);
-            black_box(blocked);
+            for row in rays.chunks(ROW) {
+                black_box(tree.any_hits(&row.iter().collect()));
+            }
         }
     });
     stopwatch.read()

@@ -146,8 +146,7 @@ impl<S> Seen<S> {
     {
         let depth = self.depth();
         let twice_error = self.error.add(self.error);
-        let is_inside =
-            twice_error.lt(self.least) | self.most.lt(S::splat(0.0).sub(twice_error));
+        let is_inside = twice_error.lt(self.least) | self.most.lt(S::splat(0.0).sub(twice_error));
         let inverse = S::splat(1.0).div(depth.area);
         let height = depth.beyond_first.mul_add(inverse, depth.first);
         let ahead = if is_reversed {

@@ -107,7 +107,11 @@ impl<'a> Packet<'a> {
         let mut are_alike = true;
         for i in 0..SIZE {
             let origin = [self.origin[0][i], self.origin[1][i], self.origin[2][i]];
-            let [x, y, z] = [self.direction[0][i], self.direction[1][i], self.direction[2][i]];
+            let [x, y, z] = [
+                self.direction[0][i],
+                self.direction[1][i],
+                self.direction[2][i],
+            ];
             are_alike &= leads(main, [x, y, z])
                 & ((z < 0.0) == is_reversed)
                 & is_ordinary(origin, z, reach)
@@ -127,7 +131,11 @@ impl<'a> Packet<'a> {
             let main_inverse = 1.0 / main;
             self.shear[0][i] = self.direction[0][i] * main_inverse;
             self.shear[1][i] = self.direction[1][i] * main_inverse;
-            let t_min = if self.t_min[i] > 0.0 { self.t_min[i] } else { 0.0 };
+            let t_min = if self.t_min[i] > 0.0 {
+                self.t_min[i]
+            } else {
+                0.0
+            };
             self.t_min[i] = t_min;
             least[i] = first_depth(t_min, main);
             most[i] = last_depth(self.found.t[i], main);

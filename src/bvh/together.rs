@@ -16,10 +16,13 @@ use crate::math::RayRow;
 const GROUPS: usize = SIZE / 8;
 
 /// Slopes that differ by more are not traced together: the beam would hold much that no ray meets.
-const MOST_SPREAD: f32 = 0.25;
+const MOST_SPREAD: f32 = 0.6;
 
 /// Packets that have been to so many leaves and are not done are broken up: what the beam holds is too much of too small triangles.
 const MOST_LOOKS: usize = 80;
+
+/// The same for rays that end at any hit, with what waits to be visited: little of that will be behind a hit.
+const MOST_WORK: usize = 28;
 
 /// The way of some rays through a tree, to be compiled for each kind of vectors.
 ///
@@ -115,8 +118,7 @@ impl<const ANY: bool, const W: usize> Job<W> for Together<'_, ANY, W> {
                     continue;
                 }
                 let place = current.index();
-                let is_found =
-                    packet.meet::<S, ANY, W>(tree, place, triangles, group, &mut bounds);
+                let is_found = packet.meet::<S, ANY, W>(tree, place, triangles, group, &mut bounds);
                 if is_found {
                     fars[group] = packet.far::<S, W>(group);
                     far = greatest(&fars);
@@ -126,7 +128,12 @@ impl<const ANY: bool, const W: usize> Job<W> for Together<'_, ANY, W> {
                 break;
             }
             looks += 1;
-            if looks > MOST_LOOKS {
+            let is_too_much = if ANY {
+                looks + stack.len() > MOST_WORK
+            } else {
+                looks > MOST_LOOKS
+            };
+            if is_too_much {
                 rest = packet.live;
                 break;
             }

@@ -171,7 +171,9 @@ impl Bvh {
     where
         Level: Run<W>,
     {
-        let there = u64::MAX.checked_shr((ROW - rays.count()) as u32).unwrap_or(0);
+        let there = u64::MAX
+            .checked_shr((ROW - rays.count()) as u32)
+            .unwrap_or(0);
         if tree.nodes.is_empty() || rays.count() < LEAST_TOGETHER {
             return there;
         }

@@ -18,13 +18,13 @@ use std::cell::RefCell;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
-use crate::bvh::{Builder, Hit};
+use crate::bvh::{Builder, Hit, HitRow};
 use crate::camera::Camera;
 use crate::color::Rgb;
 use crate::import::{WarningCode, Warnings};
 use crate::light::Light;
 use crate::material::{Bsdf, Material};
-use crate::math::{Aabb, DAffine3, DVec3, Mat3, Ray, UnitVec3, Vec3, gamma};
+use crate::math::{Aabb, DAffine3, DVec3, Mat3, Ray, RayRow, UnitVec3, Vec3, gamma};
 use crate::scene::{Background, Keep, LeftOut, MeshId, Omission, Placed, Scene};
 
 pub use defects::{Defects, NEEDLE_ASPECT};
@@ -214,18 +214,15 @@ impl PreparedScene<'_> {
         })
     }
 
-    /// The nearest hit of each of `rays`, into `hits`, which is as long.
-    pub fn closest_hits(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
-        self.geometry.tracer.closest_hits(rays, hits);
+    /// The nearest hit of each of `rays`.
+    pub fn closest_hits(&self, rays: &RayRow) -> HitRow {
+        self.geometry.tracer.closest_hits(rays)
     }
 
-    /// Whether something is in the way of each of `rays`, into `blocked`, which is as long; `false`, and nothing is
-    /// done, where [`Self::crossings`] may tell more than that.
-    pub fn are_blocked(&self, rays: &[Ray], blocked: &mut [bool]) -> bool {
-        if !self.has_transparency {
-            self.geometry.tracer.any_hits(rays, blocked);
-        }
-        !self.has_transparency
+    /// Whether something is in the way of each of `rays`, a bit for each; `None` where [`Self::crossings`] may
+    /// tell more than that.
+    pub fn are_blocked(&self, rays: &RayRow) -> Option<u64> {
+        (!self.has_transparency).then(|| self.geometry.tracer.any_hits(rays))
     }
 
     /// Whether two hits of a ray are on an edge or corner that their triangles share, and the

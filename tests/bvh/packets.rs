@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use halfshade::bvh::Bvh;
-use halfshade::math::Ray;
+use halfshade::math::{ROW, Ray, RayRow};
 
 use super::meshes::{Mesh, Random, bunny, soup, sphere, terrain};
 
@@ -17,10 +17,14 @@ fn check(mesh: &Mesh, rays: &[Ray]) -> f64 {
 }
 
 fn check_in(tree: &Bvh, rays: &[Ray], name: &str) -> f64 {
-    let mut hits = vec![None; rays.len()];
-    let mut blocked = vec![false; rays.len()];
-    tree.closest_hits(rays, &mut hits);
-    tree.any_hits(rays, &mut blocked);
+    let rows: Vec<RayRow> = rays.chunks(ROW).map(|row| row.iter().collect()).collect();
+    let (hits, blocked): (Vec<_>, Vec<_>) = rows
+        .iter()
+        .flat_map(|row| {
+            let (hits, blocked) = (tree.closest_hits(row), tree.any_hits(row));
+            (0..row.count()).map(move |i| (hits.get(i), blocked >> i & 1 != 0))
+        })
+        .unzip();
     for (i, ray) in rays.iter().enumerate() {
         let alone = tree.closest_hit(ray);
         // `Debug` shows every bit of a float.

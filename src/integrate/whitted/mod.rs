@@ -12,7 +12,7 @@ use crate::color::Rgb;
 use crate::interaction::Interaction;
 use crate::light::{Light, LightSample};
 use crate::material::{Bsdf, View, reflect, refract};
-use crate::math::Ray;
+use crate::math::{ROW, Ray, RayRow};
 use crate::prepare::{PreparedScene, Surface};
 use crate::sampling::Sampler;
 use crate::scene::Settings;
@@ -78,12 +78,10 @@ struct Work {
     sample: usize,
     /// Its rays that are still to be followed.
     pending: Vec<Pending>,
-    /// Rays to lights, of all samples.
-    shadow_rays: Vec<Ray>,
+    /// Rays to lights, of all samples; all rows but the last are full.
+    shadow_rays: Vec<RayRow>,
     /// What they are for.
     shadows: Vec<Shadow>,
-    /// Whether something is in their way.
-    blocked: Vec<bool>,
     /// What they brought to each sample so far: a sum of its own, so that it does not matter when they are
     /// traced.
     lit: Vec<Rgb>,
@@ -104,7 +102,12 @@ impl Work {
     /// Adds a shadow ray from a vertex of the sample at this place, `depth` scattering events from the camera, and
     /// what the light adds to it.
     fn add_shadow(&mut self, ray: Ray, sample: usize, light: u32, depth: u32, value: Rgb) {
-        self.shadow_rays.push(ray);
+        if self.shadows.len().is_multiple_of(ROW) {
+            self.shadow_rays.push(RayRow::EMPTY);
+        }
+        if let Some(row) = self.shadow_rays.last_mut() {
+            row.push(&ray);
+        }
         self.shadows.push(Shadow {
             sample,
             light,
@@ -279,7 +282,7 @@ impl<'a> Whitted<'a> {
 
     /// Traces the shadow rays that wait, if they are many.
     fn light_up_if_full(&self, work: &mut Work, log: &mut RayLog) {
-        if work.shadow_rays.len() >= MOST_WAITING {
+        if work.shadows.len() >= MOST_WAITING {
             self.light_up(work, log);
         }
     }
@@ -287,39 +290,37 @@ impl<'a> Whitted<'a> {
     /// Traces the shadow rays, and adds what comes through to what their samples are lit by.
     fn light_up(&self, work: &mut Work, log: &mut RayLog) {
         let Work {
-            shadow_rays: rays,
+            shadow_rays: rows,
             shadows,
-            blocked,
             lit,
             ..
         } = work;
-        blocked.resize(rays.len(), false);
-        let is_told = self.scene.are_blocked(rays, blocked);
-        for ((shadow, ray), is_blocked) in shadows.iter().zip(rays.iter()).zip(blocked.iter()) {
-            let value = match (is_told, is_blocked) {
-                (true, true) => Rgb::BLACK,
-                (true, false) => shadow.value,
-                (false, _) => shadow.value * transmittance(self.scene, ray, straight_through),
-            };
-            lit[shadow.sample] += value;
-            log.turn_to(shadow.sample);
-            log.light(
-                Source::Light(shadow.light),
-                shadow.depth + 1,
-                Rgb::WHITE,
-                value,
-            );
-            let kind = RayKind::Shadow(shadow.light);
-            log.add(kind, || RayRecord {
-                kind,
-                depth: shadow.depth,
-                ray: *ray,
-                t: None,
-                weight: value,
-            });
+        for (rays, shadows) in rows.iter().zip(shadows.chunks(ROW)) {
+            let blocked = self.scene.are_blocked(rays);
+            for (i, shadow) in shadows.iter().enumerate() {
+                let value = match blocked {
+                    Some(blocked) if blocked >> i & 1 != 0 => Rgb::BLACK,
+                    Some(_) => shadow.value,
+                    None => {
+                        shadow.value * transmittance(self.scene, &rays.get(i), straight_through)
+                    }
+                };
+                lit[shadow.sample] += value;
+                log.turn_to(shadow.sample);
+                let source = Source::Light(shadow.light);
+                log.light(source, shadow.depth + 1, Rgb::WHITE, value);
+                let kind = RayKind::Shadow(shadow.light);
+                log.add(kind, || RayRecord {
+                    kind,
+                    depth: shadow.depth,
+                    ray: rays.get(i),
+                    t: None,
+                    weight: value,
+                });
+            }
         }
         shadows.clear();
-        rays.clear();
+        rows.clear();
     }
 
     /// Sends rays on from a mirror or from glass; returns the share that goes straight on.
@@ -391,18 +392,21 @@ impl Integrator for Whitted<'_> {
     }
 
     fn radiances(&self, samples: &[CameraSample], radiances: &mut Vec<Rgb>, log: &mut RayLog) {
-        let rays: Vec<Ray> = samples.iter().map(|sample| sample.ray).collect();
-        let mut hits = vec![None; rays.len()];
-        self.scene.closest_hits(&rays, &mut hits);
         let mut work = Work {
-            shadow_rays: Vec::with_capacity(rays.len()),
-            shadows: Vec::with_capacity(rays.len()),
-            lit: vec![Rgb::BLACK; rays.len()],
+            shadows: Vec::with_capacity(samples.len()),
+            lit: vec![Rgb::BLACK; samples.len()],
             ..Work::default()
         };
         let mut plain = Plain::NONE;
         let start = radiances.len();
-        for (place, (CameraSample { ray, sampler }, hit)) in samples.iter().zip(hits).enumerate() {
+        let mut hits = None;
+        for (place, CameraSample { ray, sampler }) in samples.iter().enumerate() {
+            let i = place % ROW;
+            if i == 0 {
+                let row = samples[place..].iter().take(ROW).map(|sample| &sample.ray);
+                hits = Some(self.scene.closest_hits(&row.collect()));
+            }
+            let hit = hits.as_ref().and_then(|hits| hits.get(i));
             if plain.is_full() {
                 self.light_plain(&mut plain, samples, &mut work, log);
             }
