@@ -16,7 +16,6 @@ mod layout;
 mod packet;
 mod simd;
 mod stats;
-mod together;
 mod traverse;
 mod tree;
 mod triangle;

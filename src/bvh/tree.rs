@@ -6,9 +6,9 @@ use super::count::{Counter, Silent, TraversalCounts};
 use super::filter::Filter;
 use super::hit::{Hit, HitRow, Search, key};
 use super::layout::{Block, ChildRef, Node, Tree};
+use super::packet::Together;
 use super::simd::{Job, Lanes, Level, Run, prefetch};
 use super::stats::TreeStats;
-use super::together::Together;
 use super::traverse::{Leaves, Stop, Walk};
 use crate::math::{Aabb, ROW, Ray, RayRow, Vec3};
 

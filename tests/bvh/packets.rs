@@ -1,7 +1,7 @@
 //! Rays that are traced together find what each finds by itself, bit for bit.
 
 use glam::Vec3;
-use halfshade::bvh::Bvh;
+use halfshade::bvh::{Builder, Bvh};
 use halfshade::math::{ROW, Ray, RayRow};
 
 use super::meshes::{Mesh, Random, bunny, soup, sphere, terrain};
@@ -148,4 +148,66 @@ fn many_small_triangles() {
     for (name, tree) in mesh.trees().into_iter().take(3) {
         check_in(&tree, &rays, &name);
     }
+}
+
+/// Sheets of small triangles, one behind the other: so close that bounds of depth overlap, coincident, or turned round.
+fn sheets() -> Mesh {
+    let mut mesh = terrain(24);
+    let one = mesh.clone();
+    for (number, shift) in [0.0, 1e-7, 2e-6, 1e-3, -1e-3, 0.0].into_iter().enumerate() {
+        let first = mesh.positions.len() as u32;
+        mesh.positions.extend(
+            one.positions
+                .iter()
+                .map(|p| *p + Vec3::new(0.0, shift, 0.0)),
+        );
+        mesh.indices.extend(one.indices.iter().map(|&[a, b, c]| {
+            let [a, b, c] = [a + first, b + first, c + first];
+            if number % 2 == 0 {
+                [a, b, c]
+            } else {
+                [c, b, a]
+            }
+        }));
+    }
+    mesh
+}
+
+#[test]
+fn surfaces_that_nearly_coincide() {
+    let mesh = sheets();
+    let tree = Bvh::build(&mesh.positions, &mesh.indices, Builder::Balanced);
+    for (eye, size) in [
+        (Vec3::new(0.3, 2.0, 3.0), 1.0),
+        (Vec3::new(0.3, 2.0, 3.0), 0.01),
+        (Vec3::new(0.0, -4.0, 0.1), 0.3),
+    ] {
+        let mut rays = camera(eye, Vec3::ZERO, size, 24);
+        let share = check(&mesh, &rays);
+        assert!(share > 0.3, "{share}");
+        // Ends at the surfaces, or beginnings.
+        for ray in &mut rays {
+            let Some(t) = tree.closest_hit(ray).map(|hit| hit.t) else {
+                continue;
+            };
+            (ray.t_min, ray.t_max) = if ray.direction.x > 0.0 {
+                (t, f32::INFINITY)
+            } else {
+                (0.0, t.next_up())
+            };
+        }
+        check(&mesh, &rays);
+    }
+}
+
+#[test]
+fn rays_that_start_on_a_surface() {
+    let mesh = terrain(40);
+    let start = camera(Vec3::new(0.3, 2.0, 3.0), Vec3::ZERO, 0.5, 16);
+    let tree = Bvh::build(&mesh.positions, &mesh.indices, Builder::Balanced);
+    let rays = start.iter().filter_map(|ray| {
+        let hit = tree.closest_hit(ray)?;
+        Some(Ray::new(ray.at(hit.t), Vec3::new(0.2, 1.0, 0.1)))
+    });
+    check(&mesh, &rays.collect::<Vec<_>>());
 }

@@ -1,15 +1,15 @@
 //! Packets: rays that run nearly the same way go through a tree together.
 //!
-//! The tree is walked once for all of them, by what their [`Beam`](super::beam::Beam) may meet. At the leaves the beams of
+//! The tree is walked once for all of them, by what their [`Beam`](crate::bvh::beam::Beam) may meet. At the leaves the beams of
 //! groups, as many rays as a vector holds, sort out triangles, and each that is left is tested against all rays
 //! of its group at once.
 
-use super::beam::BeamTest;
-use super::hit::HitRow;
-use super::layout::{ChildRef, Tree};
-use super::packet::{Packet, SIZE};
-use super::simd::{Entry, Job, Lanes, Stack, prefetch};
-use super::traverse::nearest_child;
+use super::{Packet, SIZE};
+use crate::bvh::beam::BeamTest;
+use crate::bvh::hit::HitRow;
+use crate::bvh::layout::{ChildRef, Tree};
+use crate::bvh::simd::{Entry, Job, Lanes, Stack, prefetch};
+use crate::bvh::traverse::nearest_child;
 use crate::math::RayRow;
 
 /// The most groups of a packet: of 8 rays.
@@ -27,7 +27,7 @@ const MOST_WORK: usize = 28;
 /// The way of some rays through a tree, to be compiled for each kind of vectors.
 ///
 /// With `ANY` each ray's first hit, wherever it is, ends its search, and only [`HitRow::is_hit`] is told.
-pub(super) struct Together<'a, const ANY: bool, const W: usize> {
+pub(in crate::bvh) struct Together<'a, const ANY: bool, const W: usize> {
     pub tree: &'a Tree<W>,
     /// Largest coordinate of the tree.
     pub reach: f32,
