@@ -205,12 +205,13 @@ impl Film {
 
     /// Smallest, mean and largest number of samples of a pixel.
     pub fn sample_counts(&self) -> (u64, f64, u64) {
-        let counts = || self.pixels.iter().map(Pixel::count);
-        let total: u64 = counts().sum();
-        (
-            counts().min().unwrap_or(0),
-            total as f64 / self.pixels.len().max(1) as f64,
-            counts().max().unwrap_or(0),
-        )
+        let (mut least, mut total, mut most) = (u64::MAX, 0, 0);
+        for count in self.pixels.iter().map(Pixel::count) {
+            least = least.min(count);
+            total += count;
+            most = most.max(count);
+        }
+        let pixels = self.pixels.len().max(1);
+        (least.min(most), total as f64 / pixels as f64, most)
     }
 }

@@ -83,6 +83,8 @@ pub fn encode(
         PngBits::Eight => ::png::BitDepth::Eight,
         PngBits::Sixteen => ::png::BitDepth::Sixteen,
     });
+    // The default takes longer than many a render, for files that are not much smaller.
+    encoder.set_compression(::png::Compression::Fast);
     // Readers that do not know the sRGB chunk go by the other two, which mean nearly the same.
     encoder.set_source_srgb(::png::SrgbRenderingIntent::Perceptual);
     encoder.set_source_gamma(::png::ScaledFloat::from_scaled(45_455));

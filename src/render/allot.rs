@@ -13,8 +13,6 @@
 //! tile learns from the difference of its pixels' halves. With errors falling like n^-p and samples that cost c, the sum of all
 //! errors is least where n grows like (variance / c)^(1 / (1 + p)) (Lagrange).
 
-use std::collections::BTreeMap;
-
 use rayon::prelude::*;
 
 use super::difficulty::Difficulty;
@@ -127,11 +125,14 @@ fn counted_classes(tiles: &[Allotted]) -> Classes {
     let scores = || tiles.iter().flat_map(|tile| &tile.shares).map(|s| s.score);
     let (least, most) = (scores().min().unwrap_or(0), scores().max().unwrap_or(0));
     let span = usize::from(most.abs_diff(least)) + 1;
-    let mut by_taken = BTreeMap::<u32, Vec<Class>>::new();
+    let mut by_taken = Vec::<(u32, Vec<Class>)>::new();
     for (share, class) in tiles.iter().flat_map(Allotted::halves) {
-        let classes = by_taken.entry(share.taken);
-        let classes = classes.or_insert_with(|| vec![Class::default(); span]);
-        classes[usize::from(share.score.abs_diff(least))].add(&class);
+        let known = by_taken.iter().position(|(taken, _)| *taken == share.taken);
+        let known = known.unwrap_or_else(|| {
+            by_taken.push((share.taken, vec![Class::default(); span]));
+            by_taken.len() - 1
+        });
+        by_taken[known].1[usize::from(share.score.abs_diff(least))].add(&class);
     }
     let of_taken = |(taken, classes): (u32, Vec<Class>)| {
         let shares = (least..=most).map(move |score| Share { score, taken });
@@ -284,16 +285,12 @@ impl Allotment {
 
     fn outcome(&self, scale: f64, least: u32) -> Outcome {
         let mut sum = Outcome::default();
-        // Neighbours in the order of scores have the same count more often than not, and powers are slow.
-        let mut fallen = (1, 1.0);
+        let mut fall = Fall::new(self.exponent);
         for &(share, class) in &self.classes {
             let count = self.count(share, scale, least);
             sum.samples += class.count * u64::from(count);
             sum.rays += class.cost * f64::from(count);
-            if count != fallen.0 {
-                fallen = (count, fall(count, self.exponent));
-            }
-            sum.error += class.weight * fallen.1;
+            sum.error += class.weight * fall.to(count);
         }
         sum
     }
@@ -316,13 +313,14 @@ impl<'a> Measured<'a> {
     fn of(tile: &'a Tile, difficulty: &Difficulty, exponent: f64) -> Self {
         let (mut error, mut model, mut squares) = (0.0, 0.0, 0.0);
         let mut of_tile = Vec::with_capacity(tile.pixels.len());
+        let mut fall = Fall::new(exponent);
         for (i, place) in tile.rect().pixels().enumerate() {
             let taken = tile.taken[i];
             let of = difficulty.for_halves(place.x, place.y, taken);
             let expected: f64 = of
                 .iter()
                 .zip(taken)
-                .map(|(&d, n)| part(d, n, exponent))
+                .map(|(&d, n)| 0.25 * f64::from(d) * fall.to(n.max(1)))
                 .sum();
             error += tile.pixels[i].relative_squared_error().unwrap_or(0.0);
             model += expected;
@@ -380,12 +378,27 @@ impl<'a> Measured<'a> {
     }
 }
 
-/// What a half with `taken` samples adds to the squared error of its pixel.
-fn part(difficulty: f32, taken: u32, exponent: f64) -> f64 {
-    0.25 * f64::from(difficulty) * fall(taken.max(1), exponent)
+/// What of a squared error is left with more samples. Neighbours have the same number more often than not, and
+/// powers are slow.
+struct Fall {
+    exponent: f64,
+    /// The last number of samples, and what it left.
+    last: (u32, f64),
 }
 
-/// What of a squared error is left with `n` samples.
-fn fall(n: u32, exponent: f64) -> f64 {
-    f64::from(n).powf(-exponent)
+impl Fall {
+    /// With this power of the number of samples.
+    fn new(exponent: f64) -> Self {
+        Self {
+            exponent,
+            last: (1, 1.0),
+        }
+    }
+
+    fn to(&mut self, samples: u32) -> f64 {
+        if samples != self.last.0 {
+            self.last = (samples, f64::from(samples).powf(-self.exponent));
+        }
+        self.last.1
+    }
 }

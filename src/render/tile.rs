@@ -79,6 +79,9 @@ impl Tile {
         account: Option<&Account>,
         stop: &Stop,
     ) -> u64 {
+        if self.taken == self.goal {
+            return 0;
+        }
         let mut batch = Batch::new(job, integrator, account);
         // What a sample tells that sees nothing but the background.
         let beyond = account.cloned().map(|mut account| {
@@ -87,6 +90,9 @@ impl Tile {
         });
         let mut done = 0;
         'pixels: for (i, pixel) in self.pixels_by_neighbourhood() {
+            if self.taken[i] == self.goal[i] {
+                continue;
+            }
             let is_beyond = foreground.is_beyond(pixel);
             for half in 0..2 {
                 let numbers = self.taken[i][half]..self.goal[i][half];
