@@ -42,7 +42,7 @@ impl Width {
 }
 
 /// Fewer rays are traced one by one.
-const LEAST_TOGETHER: usize = 4;
+const LEAST_TOGETHER: usize = 12;
 
 #[derive(Debug, PartialEq)]
 enum Body {

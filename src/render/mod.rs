@@ -242,10 +242,13 @@ impl Run<'_> {
         let round = round(self.job);
         let first = round * FIRST_SAMPLES.div_ceil(round);
         let mut samples = 1;
-        aim_all(&mut self.tiles, [1, 0]);
-        // Without a deadline: there is to be no hole in the picture.
-        let mut end = self.pass(None);
-        self.pace.warmed_up(self.rays());
+        let mut end = None;
+        if self.limits.deadline.is_some() {
+            aim_all(&mut self.tiles, [1, 0]);
+            // However late it is: there is to be no hole in the picture.
+            end = self.pass(None);
+            self.pace.warmed_up(self.rays());
+        }
         while end.is_none() && samples <= first.min(most[0]) {
             let aim = if round > 1 { first } else { samples };
             aim_all(&mut self.tiles, most.map(|most| most.min(aim)));

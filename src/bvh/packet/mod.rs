@@ -52,6 +52,8 @@ pub(super) struct Packet<'a> {
     holds: u64,
     /// A bit for each ray that still looks for something.
     pub live: u64,
+    /// As many rays as a vector holds are a group.
+    pub groups: usize,
     /// What the exact test found.
     found: &'a mut HitRow,
 }
@@ -59,8 +61,9 @@ pub(super) struct Packet<'a> {
 impl<'a> Packet<'a> {
     /// The rays of `rays`, which are to find what is better than `found`. `reach` is the largest coordinate of the tree.
     #[inline(always)]
-    pub fn new(rays: &RayRow, found: &'a mut HitRow, reach: f32) -> Self {
+    pub fn new<const W: usize>(rays: &RayRow, found: &'a mut HitRow, reach: f32) -> Self {
         let count = rays.count();
+        let groups = count.div_ceil(W);
         let first = rays.get(0);
         let main = main_axis(first.direction.to_array());
         let axes = AXES[main];
@@ -83,10 +86,11 @@ impl<'a> Packet<'a> {
             held: [0; SIZE],
             holds: 0,
             live: u64::MAX >> (SIZE - count),
+            groups,
             found,
         };
-        // The first ray stands for those that are not there; they look nowhere.
-        for i in count..SIZE {
+        // The first ray stands for those that a group lacks; they look nowhere.
+        for i in count..groups * W {
             for k in 0..3 {
                 packet.origin[k][i] = packet.origin[k][0];
                 packet.direction[k][i] = packet.direction[k][0];
@@ -94,54 +98,58 @@ impl<'a> Packet<'a> {
             packet.t_min[i] = 0.0;
             packet.found.t[i] = 0.0;
         }
-        packet.measure();
+        packet.measure::<W>();
         packet
     }
 
     /// Whether all rays have the main axis in common and are far from all overflow.
     #[inline(always)]
-    pub fn are_alike(&self, reach: f32) -> bool {
+    pub fn are_alike<const W: usize>(&self, reach: f32) -> bool {
         let Course {
             axes, is_reversed, ..
         } = self.course;
         let main = axes[2];
         let mut are_alike = true;
-        for i in 0..SIZE {
-            let origin = [self.origin[0][i], self.origin[1][i], self.origin[2][i]];
-            let [x, y, z] = [
-                self.direction[0][i],
-                self.direction[1][i],
-                self.direction[2][i],
-            ];
-            are_alike &= leads(main, [x, y, z])
-                & ((z < 0.0) == is_reversed)
-                & is_ordinary(origin, z, reach)
-                & !self.t_min[i].is_nan()
-                & !self.found.t[i].is_nan();
+        for group in 0..self.groups {
+            for i in group * W..(group + 1) * W {
+                let origin = [self.origin[0][i], self.origin[1][i], self.origin[2][i]];
+                let [x, y, z] = [
+                    self.direction[0][i],
+                    self.direction[1][i],
+                    self.direction[2][i],
+                ];
+                are_alike &= leads(main, [x, y, z])
+                    & ((z < 0.0) == is_reversed)
+                    & is_ordinary(origin, z, reach)
+                    & !self.t_min[i].is_nan()
+                    & !self.found.t[i].is_nan();
+            }
         }
         are_alike
     }
 
     /// Finds what follows from rays and ranges.
     #[inline(always)]
-    fn measure(&mut self) {
+    fn measure<const W: usize>(&mut self) {
         let sign = if self.course.is_reversed { -1.0 } else { 1.0 };
         let (mut least, mut most) = ([0.0; SIZE], [0.0; SIZE]);
-        for i in 0..SIZE {
-            let main = self.direction[2][i];
-            let main_inverse = 1.0 / main;
-            self.shear[0][i] = self.direction[0][i] * main_inverse;
-            self.shear[1][i] = self.direction[1][i] * main_inverse;
-            let t_min = if self.t_min[i] > 0.0 {
-                self.t_min[i]
-            } else {
-                0.0
-            };
-            self.t_min[i] = t_min;
-            least[i] = first_depth(t_min, main);
-            most[i] = last_depth(self.found.t[i], main);
-            self.begin[i] = sign * last_depth(t_min, main);
-            self.surely[i] = sign * first_depth(self.found.t[i], main);
+        for group in 0..self.groups {
+            for i in group * W..(group + 1) * W {
+                let main = self.direction[2][i];
+                let main_inverse = 1.0 / main;
+                self.shear[0][i] = self.direction[0][i] * main_inverse;
+                self.shear[1][i] = self.direction[1][i] * main_inverse;
+                let t_min = if self.t_min[i] > 0.0 {
+                    self.t_min[i]
+                } else {
+                    0.0
+                };
+                self.t_min[i] = t_min;
+                least[i] = first_depth(t_min, main);
+                most[i] = last_depth(self.found.t[i], main);
+                self.begin[i] = sign * last_depth(t_min, main);
+                self.surely[i] = sign * first_depth(self.found.t[i], main);
+            }
         }
         self.depth[1 - self.far_end] = least;
         self.depth[self.far_end] = most;
@@ -253,8 +261,8 @@ impl<'a> Packet<'a> {
 
     /// The exact test of what all rays hold.
     #[inline(always)]
-    pub fn settle_all<const W: usize>(&mut self, tree: &Tree<W>, groups: usize) {
-        for group in 0..groups {
+    pub fn settle_all<const W: usize>(&mut self, tree: &Tree<W>) {
+        for group in 0..self.groups {
             let held = (self.holds >> (group * W)) as u32 & (u32::MAX >> (32 - W));
             if held.count_ones() <= FEW {
                 self.settle(tree, u64::from(held) << (group * W));

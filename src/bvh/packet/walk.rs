@@ -50,11 +50,11 @@ impl<const ANY: bool, const W: usize> Job<W> for Together<'_, ANY, W> {
             rays,
             found,
         } = self;
-        let mut packet = Packet::new(rays, found, reach);
-        if !packet.are_alike(reach) {
+        let mut packet = Packet::new::<W>(rays, found, reach);
+        if !packet.are_alike::<W>(reach) {
             return u64::MAX;
         }
-        let groups = rays.count().div_ceil(W);
+        let groups = packet.groups;
         let (mut all, size) = packet.beam::<S, W>(0);
         let mut beams = [all; GROUPS];
         packet.course.size = if size > reach { size } else { reach };
@@ -139,7 +139,7 @@ impl<const ANY: bool, const W: usize> Job<W> for Together<'_, ANY, W> {
             }
         }
         if !ANY {
-            packet.settle_all(tree, groups);
+            packet.settle_all(tree);
         }
         rest
     }
