@@ -186,6 +186,8 @@ pub(super) struct Filter<S> {
     pub origin: [S; 3],
     /// Slopes of the two lesser axes along the main one, each rounded twice.
     pub shear: [S; 2],
+    /// Whether rays run towards lower coordinates of the main axis.
+    pub is_reversed: bool,
 }
 
 impl<S> Filter<S> {
@@ -198,6 +200,7 @@ impl<S> Filter<S> {
             axes: ray.axes,
             origin: splat(ray.origin),
             shear: [S::splat(ray.shear[0]), S::splat(ray.shear[1])],
+            is_reversed: ray.towards_lower[ray.axes[2]],
         }
     }
 
@@ -215,16 +218,46 @@ impl<S> Filter<S> {
             [S::load(&c[x]), S::load(&c[y]), S::load(&c[z])],
         ];
         let depths = [S::splat(window.depth[0]), S::splat(window.depth[1])];
-        self.candidates(&corners, depths, u32::MAX >> (32 - count))
+        let seen = self.see(&corners);
+        let lanes = seen.candidates(depths, u32::MAX >> (32 - count));
+        if lanes == 0 {
+            return 0;
+        }
+        lanes & !self.certainly_behind(&corners, &seen)
     }
 
-    /// Those of the lanes in `among` whose ray is not certain to miss its triangle: see [`Seen::candidates`].
+    /// The triangles that lie behind the origin of the ray for certain: such as the one that it starts on, a few roundings above.
+    ///
+    /// With the edges g and k from the corner a, and q = a − o, f(0) is −q·(g × k), as much as a product of
+    /// three is worth: it is off by less than 12u Σ |qᵢ| (|gⱼ kₖ| + |gₖ kⱼ|), which shrinks with the triangle, where
+    /// [`Depth`] has to do with what sheared coordinates are off by. The exact test finds a parameter of 0 there, or
+    /// below, which no hit has.
     #[inline(always)]
-    fn candidates<const W: usize>(&self, corners: &[[S; 3]; 3], depths: [S; 2], among: u32) -> u32
+    pub fn certainly_behind<const W: usize>(&self, corners: &[[S; 3]; 3], seen: &Seen<S>) -> u32
     where
         S: Lanes<W>,
     {
-        self.see(corners).candidates(depths, among)
+        let [a, b, c] = corners;
+        let g = [b[0].sub(a[0]), b[1].sub(a[1]), b[2].sub(a[2])];
+        let k = [c[0].sub(a[0]), c[1].sub(a[1]), c[2].sub(a[2])];
+        let (mut side, mut size) = (S::splat(0.0), S::splat(0.0));
+        for (x, y, z) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+            let q = a[x].sub(self.origin[x]);
+            let (first, second) = (g[y].mul(k[z]), g[z].mul(k[y]));
+            side = q.mul_add(first.sub(second), side);
+            let both = first.max_abs(first).add(second.max_abs(second));
+            size = q.max_abs(q).mul_add(both, size);
+        }
+        let area = seen.edges[0].add(seen.edges[1].add(seen.edges[2]));
+        let side = side.with_sign_flipped_by(area);
+        let behind = if self.is_reversed {
+            S::splat(0.0).sub(side)
+        } else {
+            side
+        };
+        let off = size.mul_add(S::splat(12.0 * UNIT_ROUNDOFF), S::splat(f32::MIN_POSITIVE));
+        let area_error = seen.error.mul(S::splat(8.0));
+        off.lt(behind) & area_error.lt(area.max_abs(area))
     }
 
     /// What the rays see of triangles, whose `corners` have their coordinates in the order `axes`.

@@ -205,9 +205,12 @@ fn rays_that_start_on_a_surface() {
     let mesh = terrain(40);
     let start = camera(Vec3::new(0.3, 2.0, 3.0), Vec3::ZERO, 0.5, 16);
     let tree = Bvh::build(&mesh.positions, &mesh.indices, Builder::Balanced);
-    let rays = start.iter().filter_map(|ray| {
-        let hit = tree.closest_hit(ray)?;
-        Some(Ray::new(ray.at(hit.t), Vec3::new(0.2, 1.0, 0.1)))
-    });
-    check(&mesh, &rays.collect::<Vec<_>>());
+    for above in [0.0, 1e-8, 1e-7, 1e-6, 1e-4] {
+        let rays = start.iter().filter_map(|ray| {
+            let hit = tree.closest_hit(ray)?;
+            let point = ray.at(hit.t) + above * Vec3::Y;
+            Some(Ray::new(point, Vec3::new(0.2, 1.0, 0.1)))
+        });
+        check(&mesh, &rays.collect::<Vec<_>>());
+    }
 }

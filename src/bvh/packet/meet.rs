@@ -91,6 +91,7 @@ impl Packet<'_> {
                     S::splat(self.origin[2][i]),
                 ],
                 shear: [S::splat(self.shear[0][i]), S::splat(self.shear[1][i])],
+                is_reversed: self.course.is_reversed,
             };
             let depths = [S::splat(self.depth[0][i]), S::splat(self.depth[1][i])];
             let seen = filter.see(&corners);
@@ -113,6 +114,9 @@ impl Packet<'_> {
             } else {
                 self.hold_nearest(&certain, sure, &mut doubtful, i, place)
             };
+            if doubtful != 0 && self.live >> i & 1 != 0 {
+                doubtful &= !filter.certainly_behind(&corners, &seen);
+            }
             if doubtful != 0 && self.live >> i & 1 != 0 {
                 is_found |= self.look_at::<ANY, W>(tree, place, doubtful, i);
             }
@@ -171,6 +175,7 @@ impl Packet<'_> {
             axes: self.course.axes,
             origin: [row(x, group), row(y, group), row(z, group)],
             shear: [row(&self.shear[0], group), row(&self.shear[1], group)],
+            is_reversed: self.course.is_reversed,
         };
         let depths = [row(&self.depth[0], group), row(&self.depth[1], group)];
         let vectors = [splat::<S, W>(a), splat(b), splat(c)];
@@ -190,7 +195,10 @@ impl Packet<'_> {
         } else {
             self.hold(&certain, sure, group, (place * W + lane) as u32);
         }
-        let doubtful = lanes & !sure;
+        let mut doubtful = lanes & !sure;
+        if doubtful != 0 {
+            doubtful &= !filter.certainly_behind(&vectors, &seen);
+        }
         if doubtful != 0 {
             let triangle = block.triangles[lane];
             is_found |= self.decide::<ANY, W>(tree, &corners, triangle, group, doubtful);
