@@ -6,19 +6,13 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 #[path = "../tests/common/project.rs"]
-#[allow(dead_code)]
 mod project;
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
 
 use halfshade::bench::{Spread, Stopwatch};
-use halfshade::bvh::Builder;
-use halfshade::film::Rect;
 use halfshade::import::{SceneOptions, import};
-use halfshade::prepare::prepare_keeping;
-use halfshade::render::{self, Job, render};
 use halfshade::scene::{Keep, Omission};
 
 const TURNS: usize = 5;
@@ -110,24 +104,9 @@ fn cost(path: &Path, keep: Keep, kind: Omission) -> (f64, Counts) {
         ..SceneOptions::default()
     };
     let imported = import(path, &options).unwrap_or_else(|error| panic!("{error}"));
-    let prepared = prepare_keeping(&imported.scene, Builder::default(), keep);
-    let scene = &prepared.scene;
-    let job = Job {
-        scene,
-        camera: scene.camera(&imported.scene.cameras[0]),
-        settings: &imported.settings,
-        crop: Rect::full(imported.settings.size),
-        layers: Vec::new(),
-    };
-    let film = render(&job, &AtomicBool::new(false), &|_| {});
+    let (film, left_out) = project::film_keeping(&imported, Vec::new(), keep);
     let elapsed = watch.read();
-    let all = [&imported.left_out, &prepared.left_out]
-        .into_iter()
-        .flatten()
-        .cloned();
-    let of_kind = all
-        .chain(render::left_out(&job))
-        .filter(|entry| entry.kind == kind);
+    let of_kind = left_out.iter().filter(|entry| entry.kind == kind);
     let counts = Counts {
         saved_bytes: of_kind.map(|entry| entry.saved_bytes).sum(),
         rays: film.rays.total(),

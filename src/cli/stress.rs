@@ -83,7 +83,7 @@ pub fn run(options: &StressOptions) -> Result<(), Failure> {
         Effort::Short
     };
     let reports = match scene {
-        Some(path) => run_scene(path, options)?,
+        Some(path) => run_scene(path, options, effort)?,
         None => run_cases(&chosen, effort, options.console),
     };
     show(options, &reports)?;
@@ -106,7 +106,7 @@ fn scene_path(names: &[String]) -> Result<Option<&Path>, Failure> {
 }
 
 /// Holds a scene against itself, as a small picture.
-fn run_scene(path: &Path, options: &StressOptions) -> Result<Vec<Report>, Failure> {
+fn run_scene(path: &Path, options: &StressOptions, effort: Effort) -> Result<Vec<Report>, Failure> {
     let UVec2 { x, y } = options.size;
     let import_options = SceneOptions {
         // Not later: a default camera frames the scene in this size.
@@ -130,7 +130,13 @@ fn run_scene(path: &Path, options: &StressOptions) -> Result<Vec<Report>, Failur
         technique(settings.integrator).name(),
         options.samples
     );
-    Ok(examine(&imported.scene, camera, &settings, &command))
+    Ok(examine(
+        &imported.scene,
+        camera,
+        &settings,
+        effort,
+        &command,
+    ))
 }
 
 /// The cases of these names; all where there are none.

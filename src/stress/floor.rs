@@ -9,7 +9,7 @@ use crate::math::{UVec2, UnitVec3, Vec3};
 use crate::sampling::{Pattern, SamplingConfig};
 use crate::scene::{IntegratorKind, Scene, Settings};
 
-use super::scenes::{add_quad, radiance};
+use super::scenes::{add_quad, means, radiance};
 
 /// Reflectance of the floor.
 pub const RHO: f32 = 0.6;
@@ -57,6 +57,15 @@ pub fn plane() -> Scene {
 pub fn irradiance(scene: &Scene, point: Vec3, settings: &Settings) -> f32 {
     let eye = point + Vec3::new(0.3, 1.0, 0.2);
     radiance(scene, eye, point - eye, settings).g * PI / RHO
+}
+
+/// [`irradiance`] for the seeds below `count`; the scene is prepared once.
+pub fn irradiances(scene: &Scene, point: Vec3, settings: &Settings, count: u64) -> Vec<f64> {
+    let eye = point + Vec3::new(0.3, 1.0, 0.2);
+    let mut means = means(scene, eye, point - eye, settings, count);
+    let reflected = f64::from(RHO) / std::f64::consts::PI;
+    means.iter_mut().for_each(|mean| *mean /= reflected);
+    means
 }
 
 /// A horizontal disk light of radiance 3 above (`offset`, 0, 0), facing down.

@@ -15,7 +15,7 @@ use crate::scene::{IntegratorKind, Mesh, Placed, Scene, Settings};
 
 use super::meshes::Random;
 use super::scenes::{bits, picture_of, relative_rmse};
-use super::{Check, Report};
+use super::{Check, Effort, Report};
 
 /// Largest relative RMSE of pictures that differ by rounding alone.
 const ROUNDING: f64 = 1e-5;
@@ -56,11 +56,12 @@ enum Promise {
 
 /// Renders `scene` as it is and changed, by its own technique, and says what moved; `command` renders the same
 /// picture, and is shown with the sample that moved most. Views of normals and the like, which do change, give
-/// way to `whitted`.
+/// way to `whitted`. [`Effort::Full`] tries every power of two from -40 to 40, and more of ten.
 pub fn examine(
     scene: &Scene,
     camera: &Placed<Camera>,
     settings: &Settings,
+    effort: Effort,
     command: &str,
 ) -> Vec<Report> {
     let settings = &Settings {
@@ -74,7 +75,7 @@ pub fn examine(
         camera,
         settings,
     };
-    let changes = changes(scene, camera, settings.integrator);
+    let changes = changes(scene, camera, settings.integrator, effort);
     let report = |change: &Change| Report {
         id: change.id.to_owned(),
         case: change.what.clone(),
@@ -101,7 +102,12 @@ struct View<'a> {
     settings: &'a Settings,
 }
 
-fn changes(scene: &Scene, camera: &Placed<Camera>, technique: IntegratorKind) -> Vec<Change> {
+fn changes(
+    scene: &Scene,
+    camera: &Placed<Camera>,
+    technique: IntegratorKind,
+    effort: Effort,
+) -> Vec<Change> {
     let plain = |id, what: String, kind, promise| Change {
         id,
         what,
@@ -124,7 +130,7 @@ fn changes(scene: &Scene, camera: &Placed<Camera>, technique: IntegratorKind) ->
     let cycle = DMat3::from_cols(DVec3::Y, DVec3::Z, DVec3::X);
     let mirror = DMat3::from_diagonal(DVec3::new(-1.0, 1.0, 1.0));
     let mut changes = Vec::new();
-    for k in [-40, -7, 7, 40] {
+    for k in effort.pick(vec![-40, -7, 7, 40], beside_zero(40)) {
         let kind = Kind::Scale(2f64.powi(k));
         changes.push(plain(
             "scale-2",
@@ -133,7 +139,7 @@ fn changes(scene: &Scene, camera: &Placed<Camera>, technique: IntegratorKind) ->
             Promise::Bits,
         ));
     }
-    for k in [-6, -3, 3, 6] {
+    for k in effort.pick(vec![-6, -3, 3, 6], beside_zero(12)) {
         let kind = Kind::Scale(10f64.powi(k));
         changes.push(plain(
             "scale-10",
@@ -142,7 +148,7 @@ fn changes(scene: &Scene, camera: &Placed<Camera>, technique: IntegratorKind) ->
             Promise::Value,
         ));
     }
-    for k in [1, 3, 6] {
+    for k in effort.pick(vec![1, 3, 6], (1..=9).collect()) {
         let kind = Kind::Shift(DVec3::new(1.0, -0.7, 0.4) * size * 10f64.powi(k));
         changes.push(plain(
             "shift",
@@ -192,6 +198,11 @@ fn changes(scene: &Scene, camera: &Placed<Camera>, technique: IntegratorKind) ->
         });
     }
     changes
+}
+
+/// All numbers from `-most` to `most` but 0.
+fn beside_zero(most: i32) -> Vec<i32> {
+    (-most..=most).filter(|&k| k != 0).collect()
 }
 
 fn check(scene: &Scene, reference: &View, change: &Change, command: &str) -> Check {

@@ -47,7 +47,8 @@ pub fn cross(ray: &Ray, corners: [Vec3; 3], triangle: u32) -> Option<Crossing> {
 pub enum Verdict {
     /// Rightly none.
     Miss,
-    /// Right but for the relative error of its `t`, in units of 2^-24.
+    /// Right but for the error of its `t`, in roundings to single precision: 2^-24 of `t`, or of the least normal
+    /// number where `t` is below that.
     Hit {
         /// The error.
         error: f64,
@@ -62,13 +63,14 @@ pub enum Verdict {
 pub fn compare(triangles: &Triangles, ray: &Ray, hit: Option<Hit>, margin: f64) -> Verdict {
     let unit = f64::from(UNIT_ROUNDOFF);
     let tolerance = 4.0 * unit;
-    let (t_min, t_max) = (f64::from(ray.t_min), f64::from(ray.t_max));
+    // No hit can tell of a parameter beyond the largest number.
+    let (t_min, t_max) = (f64::from(ray.t_min), f64::from(ray.t_max.min(f32::MAX)));
     // Where a ray starts in a triangle's plane, the sign of t is not certain.
     let size = |i: usize| {
         let far = triangles
             .corners(i)
             .map(|p| (p - ray.origin).abs().max_element());
-        f64::from(far[0].max(far[1]).max(far[2]) / ray.direction.abs().max_element())
+        f64::from(far[0].max(far[1]).max(far[2])) / f64::from(ray.direction.abs().max_element())
     };
     let crossings = (0..triangles.indices.len())
         .filter_map(|i| cross(ray, triangles.corners(i), i as u32))
@@ -95,12 +97,13 @@ pub fn compare(triangles: &Triangles, ray: &Ray, hit: Option<Hit>, margin: f64) 
         return Verdict::Wrong(format!("{hit:?} is no crossing: {ray:?}"));
     };
     let off = |a: f32, b: f64| (f64::from(a) - b).abs() > margin + tolerance;
-    if f64::from(hit.t) > nearest * (1.0 + tolerance) {
+    let rounding = |t: f64| unit * t.max(f32::MIN_POSITIVE.into());
+    if f64::from(hit.t) > nearest + 4.0 * rounding(nearest) {
         Verdict::Wrong(format!("{hit:?}, nearer {nearest}: {ray:?}"))
     } else if off(hit.u, own.u) || off(hit.v, own.v) {
         Verdict::Wrong(format!("{hit:?}, weights {} {}: {ray:?}", own.u, own.v))
     } else {
-        let error = (f64::from(hit.t) - own.t).abs() / own.t / unit;
+        let error = (f64::from(hit.t) - own.t).abs() / rounding(own.t);
         Verdict::Hit { error }
     }
 }

@@ -1,7 +1,7 @@
 //! The scenes of this project.
+#![allow(dead_code)] // each test file uses its own part of it
 
 #[path = "../../models/generate/mod.rs"]
-#[allow(dead_code)] // The small models are for tests/models.rs.
 mod generate;
 
 use std::fs;
@@ -12,8 +12,10 @@ use std::sync::atomic::AtomicBool;
 use halfshade::bvh::Builder;
 use halfshade::film::{Film, Rect};
 use halfshade::import::{Imported, SceneOptions, import};
-use halfshade::prepare::prepare;
-use halfshade::render::{Job, render};
+use halfshade::integrate::Aov;
+use halfshade::prepare::{PreparedScene, prepare, prepare_keeping};
+use halfshade::render::{self, Job, render};
+use halfshade::scene::{Keep, LeftOut};
 
 /// Changes of a scene file: paths and values.
 pub type Overrides<'a> = &'a [(&'a str, &'a str)];
@@ -22,16 +24,36 @@ pub type Overrides<'a> = &'a [(&'a str, &'a str)];
 pub fn film(imported: &Imported, crop: Option<Rect>) -> Film {
     let prepared = prepare(&imported.scene, Builder::default());
     assert!(prepared.warnings.is_empty());
-    let scene = &prepared.scene;
-    let settings = &imported.settings;
+    let whole = job(imported, &prepared.scene);
     let job = Job {
-        scene,
-        camera: scene.camera(&imported.scene.cameras[0]),
-        settings,
-        crop: crop.unwrap_or(Rect::full(settings.size)),
-        layers: Vec::new(),
+        crop: crop.unwrap_or(whole.crop),
+        ..whole
     };
     render(&job, &AtomicBool::new(false), &|_| {})
+}
+
+/// Renders the whole film and `layers` without what they do not need, but for what `keep` holds; and what was left out.
+pub fn film_keeping(imported: &Imported, layers: Vec<Aov>, keep: Keep) -> (Film, Vec<LeftOut>) {
+    let prepared = prepare_keeping(&imported.scene, Builder::default(), keep);
+    let job = Job {
+        layers,
+        ..job(imported, &prepared.scene)
+    };
+    let film = render(&job, &AtomicBool::new(false), &|_| {});
+    let loaded = [&imported.left_out, &prepared.left_out];
+    let left_out = loaded.into_iter().flatten().cloned();
+    (film, left_out.chain(render::left_out(&job)).collect())
+}
+
+/// The whole film, as the first camera sees it.
+fn job<'a>(imported: &'a Imported, scene: &'a PreparedScene<'a>) -> Job<'a> {
+    Job {
+        scene,
+        camera: scene.camera(&imported.scene.cameras[0]),
+        settings: &imported.settings,
+        crop: Rect::full(imported.settings.size),
+        layers: Vec::new(),
+    }
 }
 
 /// Imports a scene file.

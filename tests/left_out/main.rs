@@ -4,16 +4,13 @@
 mod document;
 mod equality;
 mod plan;
+#[path = "../common/project.rs"]
+mod project;
 
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
-use halfshade::bvh::Builder;
-use halfshade::film::Rect;
 use halfshade::import::{SceneOptions, import};
 use halfshade::integrate::{Aov, ViewKind};
-use halfshade::prepare::prepare_keeping;
-use halfshade::render::{self, Job, render};
 use halfshade::scene::{Keep, LeftOut, Needs};
 
 /// What is rendered of a scene.
@@ -46,16 +43,8 @@ fn picture(path: &Path, ask: &Ask, keep: Keep) -> (Bits, Vec<LeftOut>) {
     };
     let mut imported = import(path, &options).unwrap_or_else(|error| panic!("{error}"));
     imported.settings.light_samples = Some(1);
-    let prepared = prepare_keeping(&imported.scene, Builder::default(), keep);
-    let scene = &prepared.scene;
-    let job = Job {
-        scene,
-        camera: scene.camera(&imported.scene.cameras[0]),
-        settings: &imported.settings,
-        crop: Rect::full(imported.settings.size),
-        layers: ask.layers.iter().map(|&view| Aov::View(view)).collect(),
-    };
-    let film = render(&job, &AtomicBool::new(false), &|_| {});
+    let layers = ask.layers.iter().map(|&view| Aov::View(view)).collect();
+    let (film, left_out) = project::film_keeping(&imported, layers, keep);
     let bits = |values: &[f32; 3]| values.map(f32::to_bits);
     let bits = Bits {
         picture: film.means().iter().map(|c| bits(&c.channels())).collect(),
@@ -63,7 +52,5 @@ fn picture(path: &Path, ask: &Ask, keep: Keep) -> (Bits, Vec<LeftOut>) {
             .map(|layer| layer.iter().map(bits).collect())
             .collect(),
     };
-    let mut left_out = [imported.left_out, prepared.left_out].concat();
-    left_out.extend(render::left_out(&job));
     (bits, left_out)
 }

@@ -4,7 +4,6 @@
 #[path = "../common/mod.rs"]
 mod common;
 #[path = "../common/project.rs"]
-#[allow(dead_code)] // It renders one scene, not all.
 mod project;
 
 mod environment;

@@ -1,12 +1,13 @@
 //! G10: of coincident triangles the same one wins, always.
 
 use rayon::ThreadPoolBuilder;
+use rayon::prelude::*;
 
 use crate::bench::Triangles;
 use crate::bvh::{Builder, Hit};
 use crate::color::Rgb;
 use crate::material::Material;
-use crate::math::Vec3;
+use crate::math::{Ray, Vec3};
 use crate::prepare::prepare;
 use crate::sampling::Pattern;
 use crate::scene::Scene;
@@ -35,19 +36,23 @@ fn stacks(rays: usize) -> Check {
         }
     }
     let trees = mesh.trees();
-    let (mut wrong, mut hits) = (0, 0);
-    for ray in mesh.rays(rays, 18) {
-        let hit = trees[0].1.closest_hit(&ray);
-        let mut is_wrong = trees.iter().any(|(_, tree)| tree.closest_hit(&ray) != hit);
+    // Whether a ray hits, and whether what it hits is wrong.
+    let look = |ray: &Ray| {
+        let hit = trees[0].1.closest_hit(ray);
+        let mut is_wrong = trees.iter().any(|(_, tree)| tree.closest_hit(ray) != hit);
         if let Some(hit) = hit {
             // Copies with other first corners round u and v, and perhaps t, differently.
             let is_copy = |other: u32| other % 40 == hit.triangle % 40 && other < hit.triangle;
             let nearest = |h: &Hit| h.t <= hit.t && is_copy(h.triangle);
-            is_wrong |= trees[0].1.any_hit_if(&ray, nearest);
-            hits += 1;
+            is_wrong |= trees[0].1.any_hit_if(ray, nearest);
         }
-        wrong += u64::from(is_wrong);
-    }
+        [hit.is_some(), is_wrong].map(u64::from)
+    };
+    let [hits, wrong] = mesh
+        .rays(rays, 18)
+        .par_iter()
+        .map(look)
+        .reduce(|| [0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
     Check::none(
         format!("50 copies of triangles, every tree: other winners in {hits} hits"),
         wrong,

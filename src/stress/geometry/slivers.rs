@@ -1,6 +1,9 @@
 //! G2: needles and slivers, against exact integer arithmetic.
 
+use rayon::prelude::*;
+
 use crate::bench::Triangles;
+use crate::bvh::Bvh;
 use crate::math::{DVec3, Ray, UNIT_ROUNDOFF, Vec3};
 use crate::stress::meshes::Random;
 use crate::stress::{Check, Effort, Sweep};
@@ -15,23 +18,29 @@ pub fn run(effort: Effort) -> Vec<Check> {
 /// Aimed at from far away: misses, and errors of `t`.
 fn exact(count: u32) -> Vec<Check> {
     let mut random = Random(31);
-    let (mut tested, mut missed) = (0, 0);
+    let slivers: Vec<_> = (0..count)
+        .filter_map(|i| aimed_sliver(4 + i % 20, &mut random))
+        .collect();
+    // By tree: the error of `t`, `None` of a miss.
+    let errors: Vec<_> = slivers
+        .par_iter()
+        .map(|(corners, ray, exact_t)| {
+            let mut mesh = Triangles::default();
+            mesh.add(corners.map(vector));
+            let error = |(_, tree): &(String, Bvh)| {
+                let t = f64::from(tree.closest_hit(ray)?.t);
+                Some((t / exact_t - 1.0).abs() / f64::from(UNIT_ROUNDOFF))
+            };
+            mesh.trees().iter().map(error).collect::<Vec<_>>()
+        })
+        .collect();
+    let tested: usize = errors.iter().map(Vec::len).sum();
+    let missed = errors.iter().flatten().filter(|e| e.is_none()).count() as u64;
     // Worst error by decade of the aspect ratio.
     let mut worst = [None::<f64>; 16];
-    for i in 0..count {
-        let Some((corners, ray, exact_t)) = aimed_sliver(4 + i % 20, &mut random) else {
-            continue;
-        };
-        let mut mesh = Triangles::default();
-        mesh.add(corners.map(vector));
-        for (_, tree) in mesh.trees() {
-            tested += 1;
-            let Some(hit) = tree.closest_hit(&ray) else {
-                missed += 1;
-                continue;
-            };
-            let error = (f64::from(hit.t) / exact_t - 1.0).abs() / f64::from(UNIT_ROUNDOFF);
-            let worst = &mut worst[(aspect(corners).log10() as usize).min(15)];
+    for ((corners, ..), errors) in slivers.iter().zip(&errors) {
+        let worst = &mut worst[(aspect(*corners).log10() as usize).min(15)];
+        for &error in errors.iter().flatten() {
             *worst = Some(worst.map_or(error, |w| w.max(error)));
         }
     }
@@ -132,18 +141,19 @@ fn unharmed(triangles: u32) -> Check {
         let mut rays = mesh.rays(100, exponent as u64);
         rays.extend(aimed);
         let trees = mesh.trees();
-        for ray in rays {
-            tested += 1;
-            let hit = trees[0].1.closest_hit(&ray);
-            let agree = trees.iter().all(|(_, tree)| tree.closest_hit(&ray) == hit);
+        let is_wrong = |ray: &&Ray| {
+            let hit = trees[0].1.closest_hit(ray);
+            let agree = trees.iter().all(|(_, tree)| tree.closest_hit(ray) == hit);
             let is_sane = hit.is_none_or(|hit| {
                 hit.t.is_finite()
                     && hit.u >= 0.0
                     && hit.v >= 0.0
                     && hit.u + hit.v <= 1.0 + f32::EPSILON
             });
-            wrong += u64::from(!(agree && is_sane));
-        }
+            !(agree && is_sane)
+        };
+        tested += rays.len();
+        wrong += rays.par_iter().filter(is_wrong).count() as u64;
     }
     Check::none(
         format!("soups of slivers, widths 1e-3..1e-40: bad hits of {tested} rays"),

@@ -122,7 +122,7 @@ fn compare_all(what: &str, groups: Vec<Group>) -> Vec<Check> {
     };
     vec![
         check,
-        Check::at_most(format!("{what}: error of t / 2^-24"), error, 4.0),
+        Check::at_most(format!("{what}: error of t in roundings"), error, 4.0),
     ]
 }
 

@@ -8,7 +8,7 @@ use crate::sampling::Pattern;
 use crate::scene::Scene;
 use crate::stress::check::deviation;
 use crate::stress::closed_form::{disk_irradiance, share_beyond};
-use crate::stress::floor::{disk, irradiance, matte, plane, settings};
+use crate::stress::floor::{disk, irradiances, matte, plane, settings};
 use crate::stress::scenes::{add_light, add_quad, point_light};
 use crate::stress::{Check, Curve, Effort, Sweep};
 
@@ -63,12 +63,9 @@ fn off(scene: &Scene, light: &Light, x: f32, effort: Effort) -> f64 {
         _ => 3.0 * height / (x64 * x64 + height * height).powf(1.5),
     };
     let expected = share_beyond(f64::from(x * ABOVE / BELOW / RADIUS));
-    let values: Vec<f64> = (0..effort.pick(32, 400))
-        .map(|seed| {
-            let mut settings = settings(256, Pattern::Sobol);
-            settings.sampling.seed = seed;
-            f64::from(irradiance(scene, Vec3::new(x, 0.0, 0.0), &settings)) / free
-        })
-        .collect();
+    let point = Vec3::new(x, 0.0, 0.0);
+    let settings = settings(256, Pattern::Sobol);
+    let mut values = irradiances(scene, point, &settings, effort.pick(32, 400));
+    values.iter_mut().for_each(|value| *value /= free);
     deviation(&values, expected)
 }

@@ -6,7 +6,7 @@ use crate::math::Vec3;
 use crate::sampling::{Pattern, Target};
 use crate::stress::check::deviation;
 use crate::stress::closed_form::disk_irradiance;
-use crate::stress::floor::{disk, irradiance, plane, settings};
+use crate::stress::floor::{disk, irradiances, plane, settings};
 use crate::stress::scenes::add_light;
 use crate::stress::{Check, Curve, Effort, Sweep};
 
@@ -52,13 +52,7 @@ fn off(pattern: Pattern, count: u32, is_at_light: bool, seeds: u64) -> f64 {
         disk(radius as f32, height as f32, offset as f32, light),
     );
     let exact = 3.0 * disk_irradiance(radius, f64::from(height as f32), f64::from(offset as f32));
-    let values: Vec<f64> = (0..seeds)
-        .map(|seed| {
-            let mut settings = settings(camera, pattern);
-            settings.sampling.seed = seed;
-            settings.sampling.target = Target::Rectangle;
-            f64::from(irradiance(&scene, Vec3::ZERO, &settings))
-        })
-        .collect();
-    deviation(&values, exact)
+    let mut settings = settings(camera, pattern);
+    settings.sampling.target = Target::Rectangle;
+    deviation(&irradiances(&scene, Vec3::ZERO, &settings, seeds), exact)
 }
