@@ -200,9 +200,9 @@ fn a_cancelled_render_keeps_what_there_is() {
     let cancel = AtomicBool::new(false);
     let area = job.crop.area();
     let film = render(&job, &cancel, &|event| {
-        // After the first pass every pixel has a sample.
+        // After the first pass each half of every pixel has a sample.
         if let Event::Progress(progress) = event
-            && progress.done > area
+            && progress.done > 2 * area
         {
             cancel.store(true, std::sync::atomic::Ordering::Relaxed);
         }

@@ -189,18 +189,17 @@ impl Film {
 
     /// Share of the luminance of all samples that clamping took; 0 where it took nothing.
     pub fn clamped_share(&self) -> f64 {
+        let taken = self.rays.clamped;
+        if taken <= 0.0 {
+            return 0.0;
+        }
         let of_half = |half: &Moments| {
             let [r, g, b] = half.mean().map(|m| m as f32);
             half.count() as f64 * f64::from(Rgb::new(r, g, b).luminance())
         };
         let halves = self.pixels.iter().flat_map(|pixel| pixel.halves());
         let kept: f64 = halves.map(of_half).sum();
-        let taken = self.rays.clamped;
-        if taken > 0.0 {
-            taken / (taken + kept)
-        } else {
-            0.0
-        }
+        taken / (taken + kept)
     }
 
     /// Smallest, mean and largest number of samples of a pixel.

@@ -364,7 +364,7 @@ impl<'a> Measured<'a> {
                 let weight = 0.25 * factor * f64::from(difficulty[half]);
                 let score = (weight.max(LEAST_WEIGHT) / cost).log2() * power;
                 shares.push(Share {
-                    score: (STEPS_PER_OCTAVE * score).round() as i16,
+                    score: nearest(STEPS_PER_OCTAVE * score),
                     taken: taken[half],
                 });
                 weights.push(weight);
@@ -376,6 +376,12 @@ impl<'a> Measured<'a> {
             cost,
         }
     }
+}
+
+/// The whole number nearest to `x`, without the call that `round` is.
+fn nearest(x: f64) -> i16 {
+    const OFF: f64 = 16384.0;
+    ((x + (OFF + 0.5)) as i32 - OFF as i32) as i16
 }
 
 /// What of a squared error is left with more samples. Neighbours have the same number more often than not, and

@@ -31,6 +31,7 @@ pub use backdrop::left_out;
 pub use forecast::{Forecast, Significant};
 pub use replay::{Replay, ReplayedRay, replay};
 
+use allot::Outcome;
 use backdrop::Foreground;
 use course::{Course, Step, aim_all, dealt, round};
 use decay::Decay;
@@ -42,6 +43,9 @@ use tile::{Halves, Tile, assemble, error_of, tiles};
 const FIRST_SAMPLES: u32 = 1;
 /// By what a pass multiplies the number of samples, where somebody waits for a limit.
 const GROWTH: f64 = 2.0;
+/// A course is kept until there are so many times the samples that it began with: what is known of the pixels is not much
+/// more before.
+const FRESH: f64 = 1.5;
 /// The least by which a pass multiplies it; the first that adds a sample.
 const LEAST_GROWTHS: [f64; 4] = [1.02, 1.3, 2.0, 4.0];
 /// The share of the work after which a forecast is made.
@@ -201,6 +205,29 @@ struct Run<'a> {
     has_forecast: bool,
 }
 
+/// A course that passes follow, the samples that it began with, and where it stands.
+struct Kept {
+    course: Course,
+    since: u64,
+    now: Outcome,
+}
+
+impl Kept {
+    fn new(course: Course) -> Self {
+        let now = course.now();
+        Self {
+            course,
+            since: now.samples,
+            now,
+        }
+    }
+
+    /// Whether another course would hardly be better.
+    fn is_fresh(&self) -> bool {
+        (self.now.samples as f64) < FRESH * self.since as f64
+    }
+}
+
 impl Run<'_> {
     fn finish(&mut self) -> StoppedBy {
         if let Some(end) = self.first_passes() {
@@ -212,6 +239,7 @@ impl Run<'_> {
         }
         // What a pass was to make of the squared error, and what that was before.
         let mut foreseen: Option<(f64, ErrorSums)> = None;
+        let mut kept: Option<Kept> = None;
         loop {
             let sums = error_of(&self.tiles);
             let error = sums.map(|sums| sums.root());
@@ -223,15 +251,21 @@ impl Run<'_> {
             {
                 return StoppedBy::Error;
             }
-            let course = Course::of(self.job, &self.tiles, is_adaptive, self.decay.exponent());
-            let Some(step) = self.next_step(&course, error) else {
+            let Kept { course, since, now } =
+                kept.take().filter(Kept::is_fresh).unwrap_or_else(|| {
+                    let exponent = self.decay.exponent();
+                    Kept::new(Course::of(self.job, &self.tiles, is_adaptive, exponent))
+                });
+            let Some(step) = self.next_step(&course, now, error) else {
                 return StoppedBy::Samples;
             };
-            foreseen = sums.map(|sums| (step.outcome.error / course.now().error, sums));
+            foreseen = sums.map(|sums| (step.outcome.error / now.error, sums));
             course.aim(&mut self.tiles, &step);
             if let Some(end) = self.pass(self.limits.deadline) {
                 return end;
             }
+            let now = step.outcome;
+            kept = Some(Kept { course, since, now });
         }
     }
 
@@ -307,8 +341,7 @@ impl Run<'_> {
     }
 
     /// What the next pass is for; `None` where all samples are there.
-    fn next_step(&mut self, course: &Course, error: Option<f64>) -> Option<Step> {
-        let now = course.now();
+    fn next_step(&mut self, course: &Course, now: Outcome, error: Option<f64>) -> Option<Step> {
         let most_samples = self.job.crop.area() * u64::from(self.limits.samples);
         let bounds = Bounds {
             limits: self.limits,

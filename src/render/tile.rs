@@ -363,10 +363,16 @@ pub(super) fn assemble(job: &Job, tiles: &[Tile], stopped_by: StoppedBy) -> Film
         stopped_by,
     };
     for tile in tiles {
-        for (i, pixel) in tile.rect.pixels().enumerate() {
-            let to = ((pixel.y - crop.y) * crop.width + pixel.x - crop.x) as usize;
+        let place = |x: u32, y: u32| ((y - crop.y) * crop.width + x - crop.x) as usize;
+        let rect = tile.rect;
+        let rows = tile.pixels.chunks_exact(rect.width.max(1) as usize);
+        for (row, y) in rows.zip(rect.y..) {
+            film.pixels[place(rect.x, y)..][..row.len()].copy_from_slice(row);
+        }
+        let has_more = !(film.layers.is_empty() && tile.objects.is_empty());
+        for (i, pixel) in rect.pixels().enumerate().filter(|_| has_more) {
+            let to = place(pixel.x, pixel.y);
             let pixel = &tile.pixels[i];
-            film.pixels[to] = *pixel;
             let mean = |sums: [f64; 2]| pixel.mean_of_sums(sums) as f32;
             for (layer, from) in film.layers.iter_mut().zip(&tile.layers) {
                 layer[to] = from[i].map(mean);
