@@ -100,13 +100,9 @@ impl RayRow {
             t_max: self.t_max[i],
         }
     }
-
-    /// Takes all rays out.
-    pub fn clear(&mut self) {
-        self.count = 0;
-    }
 }
 
+/// Of [`ROW`] rays at most.
 impl<'a> FromIterator<&'a Ray> for RayRow {
     fn from_iter<I: IntoIterator<Item = &'a Ray>>(rays: I) -> Self {
         let mut row = Self::EMPTY;

@@ -381,7 +381,7 @@ impl<'a> Measured<'a> {
 /// The whole number nearest to `x`, without the call that `round` is.
 fn nearest(x: f64) -> i16 {
     const OFF: f64 = 16384.0;
-    ((x + (OFF + 0.5)) as i32 - OFF as i32) as i16
+    ((x.clamp(-OFF, OFF) + (OFF + 0.5)) as i32 - OFF as i32) as i16
 }
 
 /// What of a squared error is left with more samples. Neighbours have the same number more often than not, and

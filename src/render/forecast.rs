@@ -65,7 +65,8 @@ impl fmt::Display for Significant {
 /// Measures how fast a render is.
 pub(super) struct Pace {
     start: Instant,
-    /// When the first samples were there, and how many rays they took: they warm everything up, and do not count.
+    /// With a deadline: when the first samples were there, and how many rays they took. They warm everything up, and do
+    /// not count.
     warm: Option<(f64, f64)>,
 }
 

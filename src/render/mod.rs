@@ -251,15 +251,19 @@ impl Run<'_> {
             {
                 return StoppedBy::Error;
             }
+            let is_new = !kept.as_ref().is_some_and(Kept::is_fresh);
             let Kept { course, since, now } =
-                kept.take().filter(Kept::is_fresh).unwrap_or_else(|| {
+                kept.take().filter(|_| !is_new).unwrap_or_else(|| {
                     let exponent = self.decay.exponent();
                     Kept::new(Course::of(self.job, &self.tiles, is_adaptive, exponent))
                 });
             let Some(step) = self.next_step(&course, now, error) else {
                 return StoppedBy::Samples;
             };
-            foreseen = sums.map(|sums| (step.outcome.error / now.error, sums));
+            // A course that was kept foresaw by an exponent that may be out of date.
+            foreseen = sums
+                .filter(|_| is_new)
+                .map(|sums| (step.outcome.error / now.error, sums));
             course.aim(&mut self.tiles, &step);
             if let Some(end) = self.pass(self.limits.deadline) {
                 return end;

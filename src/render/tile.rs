@@ -370,8 +370,8 @@ pub(super) fn assemble(job: &Job, tiles: &[Tile], stopped_by: StoppedBy) -> Film
             film.pixels[place(rect.x, y)..][..row.len()].copy_from_slice(row);
         }
         let has_more = !(film.layers.is_empty() && tile.objects.is_empty());
-        for (i, pixel) in rect.pixels().enumerate().filter(|_| has_more) {
-            let to = place(pixel.x, pixel.y);
+        for (i, at) in rect.pixels().enumerate().filter(|_| has_more) {
+            let to = place(at.x, at.y);
             let pixel = &tile.pixels[i];
             let mean = |sums: [f64; 2]| pixel.mean_of_sums(sums) as f32;
             for (layer, from) in film.layers.iter_mut().zip(&tile.layers) {

@@ -90,10 +90,22 @@ fn shadow_rays_that_end_at_a_disk() {
 
 #[test]
 fn at_any_scale_and_place() {
-    for scale in [1e-30, 1e-12, 1e12, 1e17] {
+    for scale in [1e-30, 1e-12, 1e12, 1e14, 1e17] {
         let mesh = sphere(3).map(|p| scale * p);
-        let rays = camera(scale * Vec3::new(1.0, 2.0, 5.0), Vec3::ZERO, 0.2, 16);
+        let mut rays = camera(
+            scale * Vec3::new(1.0, 2.0, 5.0),
+            Vec3::ZERO,
+            0.2 * scale,
+            16,
+        );
         check(&mesh, &rays);
+        for length in [1.0, 1e-8, 1e8] {
+            for ray in &mut rays {
+                ray.direction = length * (ray.direction / ray.direction.abs().max_element());
+            }
+            let share = check(&mesh, &rays);
+            assert!(share > 0.5, "{scale}, {length}: {share}");
+        }
     }
     for shift in [1e2, 1e4, 1e6] {
         let mesh = sphere(3).map(|p| p + shift);
@@ -213,4 +225,35 @@ fn rays_that_start_on_a_surface() {
         });
         check(&mesh, &rays.collect::<Vec<_>>());
     }
+}
+
+/// Parameters with few digits, coordinates whose products overflow, a ray along an edge that ends at its triangle: what single rays
+/// make of them holds for packets.
+#[test]
+fn where_single_precision_ends() {
+    let one = |corners: [Vec3; 3], ray: Ray| {
+        let mut mesh = Mesh::default();
+        // Others, far away, so that there is a tree.
+        mesh.add(corners);
+        for i in 0..40 {
+            let [a, b, c] = corners
+                .map(|p| p + Vec3::X * (8.0 + i as f32) * 4.0 * (corners[0] - corners[1]).length());
+            mesh.add([a, b, c]);
+        }
+        let share = check(&mesh, &[ray; 20]);
+        (share > 0.0, mesh)
+    };
+    let low = 2f32.powi(-110) * (1.0 + 2f32.powi(-12));
+    let flat = [[-1.0, -1.0, low], [1.0, -1.0, low], [0.0, 1.0, low]].map(Vec3::from);
+    one(flat, Ray::new(Vec3::ZERO, 2f32.powi(29) * Vec3::Z));
+
+    let s = 2f32.powi(44);
+    let huge = [[0.0, 1.0, 1.0], [-1.0, -1.0, 1.0], [1.0, -1.0, 0.5]].map(|p| s * Vec3::from(p));
+    let (is_hit, _) = one(huge, Ray::new(Vec3::ZERO, Vec3::Z));
+    assert!(is_hit);
+
+    let edge = [[0.0; 3], [1.0, 0.5, 0.0], [-1.0, -15.0 / 32.0, 1.0]].map(Vec3::from);
+    let origin = Vec3::new(0.0, -2f32.powi(-49), -2f32.powi(-45));
+    let (is_hit, _) = one(edge, Ray::new(origin, Vec3::Z));
+    assert!(is_hit);
 }

@@ -59,7 +59,9 @@ impl<const W: usize> Fragment<W> {
         let make_block = |range: &std::ops::Range<u32>| {
             let mut block = Block::EMPTY;
             let numbers = &self.order[range.start as usize..range.end as usize];
-            for (lane, &triangle) in numbers.iter().enumerate() {
+            // The last one again fills up the block, whose box is then that of its triangles.
+            for lane in 0..W {
+                let triangle = numbers[lane.min(numbers.len() - 1)];
                 let corners = corners(positions, indices[triangle as usize]);
                 let [a, b, c] = corners;
                 block.set(lane, &[a.to_array(), b.to_array(), c.to_array()], triangle);

@@ -100,24 +100,23 @@ impl Packet<'_> {
                 continue;
             }
             let certain = seen.certain(self.course.is_reversed);
-            let sure = lanes & certain.lanes & S::splat(self.begin[i]).lt(certain.near);
+            let mut sure = lanes & certain.lanes & S::splat(self.begin[i]).lt(certain.near);
             let mut doubtful = lanes & !sure;
-            is_found |= if ANY {
-                let sure = sure & certain.far.lt(S::splat(self.surely[i]));
-                doubtful = lanes & !sure;
+            if ANY {
+                sure &= certain.far.lt(S::splat(self.surely[i]));
                 if sure != 0 {
                     self.end(1 << i);
-                    true
-                } else {
-                    false
+                    is_found = true;
+                    continue;
                 }
+                doubtful = lanes;
             } else {
-                self.hold_nearest(&certain, sure, &mut doubtful, i, place)
-            };
-            if doubtful != 0 && self.live >> i & 1 != 0 {
+                is_found |= self.hold_nearest(&certain, sure, &mut doubtful, i, place);
+            }
+            if doubtful != 0 {
                 doubtful &= !filter.certainly_behind(&corners, &seen);
             }
-            if doubtful != 0 && self.live >> i & 1 != 0 {
+            if doubtful != 0 {
                 is_found |= self.look_at::<ANY, W>(tree, place, doubtful, i);
             }
         }

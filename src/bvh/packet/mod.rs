@@ -18,10 +18,13 @@ use super::hit::{Hit, HitRow};
 use super::layout::{Block, Tree};
 use super::simd::Lanes;
 use super::triangle::{Corners, Crossings, ExactRay, ExactRays};
-use crate::math::{ROW, RayRow, Row, VectorRow};
+use crate::math::{ROW, RayRow, Row, VectorRow, larger};
 
 /// The most rays of a packet.
 pub(super) const SIZE: usize = ROW;
+
+/// Parameters below this are rounded to few digits: what the exact test will make of them is not certain.
+const LEAST_CERTAIN: f32 = 1.0 / (1u128 << 100) as f32;
 
 /// Of so many rays at a time, and fewer, each is tested by itself.
 const FEW: u32 = 2;
@@ -121,7 +124,6 @@ impl<'a> Packet<'a> {
                 are_alike &= leads(main, [x, y, z])
                     & ((z < 0.0) == is_reversed)
                     & is_ordinary(origin, z, reach)
-                    & !self.t_min[i].is_nan()
                     & !self.found.t[i].is_nan();
             }
         }
@@ -147,7 +149,7 @@ impl<'a> Packet<'a> {
                 self.t_min[i] = t_min;
                 least[i] = first_depth(t_min, main);
                 most[i] = last_depth(self.found.t[i], main);
-                self.begin[i] = sign * last_depth(t_min, main);
+                self.begin[i] = sign * last_depth(larger(t_min, LEAST_CERTAIN), main);
                 self.surely[i] = sign * first_depth(self.found.t[i], main);
             }
         }
@@ -282,7 +284,7 @@ impl<'a> Packet<'a> {
             debug_assert_eq!(held & !crossings.is_hit, 0, "what is certain is hit");
             for lane in 0..W {
                 let i = group * W + lane;
-                if held >> lane & 1 != 0 {
+                if (held & crossings.is_hit) >> lane & 1 != 0 {
                     let (block, place) = self.place(tree, i);
                     let hit = Hit::of(crossings.get(lane), 0, block.triangles[place]);
                     self.found.set(i, &hit);
