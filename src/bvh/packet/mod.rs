@@ -274,9 +274,9 @@ impl<'a> Packet<'a> {
             for lane in 0..W {
                 let (block, place) = self.place::<W>(tree, group * W + lane);
                 let points = block.corners_of(place, self.course.axes);
-                for corner in 0..3 {
-                    for axis in 0..3 {
-                        corners[corner][axis][lane] = points[corner][axis];
+                for (rows, point) in corners.iter_mut().zip(&points) {
+                    for (row, x) in rows.iter_mut().zip(point) {
+                        row[lane] = *x;
                     }
                 }
             }
