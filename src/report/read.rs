@@ -21,6 +21,10 @@ use crate::color::{Rgb, srgb_to_linear, srgb8_to_linear};
 use crate::math::UVec2;
 use crate::scene::MAX_PIXELS;
 
+/// The most pixels that a byte of a file can stand for: eight of one bit each, in the longest runs of deflate,
+/// 1,032 bytes to one. Nothing that is read here packs more.
+const MOST_PIXELS_PER_BYTE: u64 = 8 * 1032;
+
 /// A picture from a file.
 #[derive(Clone, Debug)]
 pub struct Opened {
@@ -60,6 +64,16 @@ pub enum ReadProblem {
         /// Rows.
         height: u64,
     },
+    /// It says that it has more pixels than so few bytes can hold.
+    #[error("says that it has {width} × {height} pixels, which do not fit into its {bytes} bytes")]
+    TooShort {
+        /// Columns.
+        width: u64,
+        /// Rows.
+        height: u64,
+        /// Length of the file.
+        bytes: u64,
+    },
     /// An EXR file of other layers.
     #[error("has neither the channels R, G and B nor the channel Y")]
     NoColors,
@@ -80,7 +94,9 @@ pub fn read_picture(path: &Path) -> Result<Opened, ReadError> {
 }
 
 fn open(path: &Path) -> Result<Opened, ReadProblem> {
-    let mut file = BufReader::new(File::open(path)?);
+    let file = File::open(path)?;
+    let bytes = file.metadata()?.len();
+    let mut file = BufReader::new(file);
     let mut start = [0; 4];
     let known = match file.read_exact(&mut start) {
         Ok(()) => start,
@@ -89,19 +105,19 @@ fn open(path: &Path) -> Result<Opened, ReadProblem> {
     };
     file.rewind()?;
     match known {
-        [0x89, b'P', b'N', b'G'] => png(file),
-        [0x76, 0x2f, 0x31, 0x01] => exr(file),
+        [0x89, b'P', b'N', b'G'] => png(file, bytes),
+        [0x76, 0x2f, 0x31, 0x01] => exr(file, bytes),
         _ => Err(ReadProblem::OtherFormat),
     }
 }
 
-fn png(file: BufReader<File>) -> Result<Opened, ReadProblem> {
+fn png(file: BufReader<File>, bytes: u64) -> Result<Opened, ReadProblem> {
     let invalid = |error: image::ImageError| ReadProblem::Invalid(error.to_string());
     let mut decoder = ImageReader::with_format(file, ImageFormat::Png)
         .into_decoder()
         .map_err(invalid)?;
     let (width, height) = decoder.dimensions();
-    check_size(width.into(), height.into())?;
+    check_size(width.into(), height.into(), bytes)?;
     let mut limits = Limits::default();
     // Four channels of 16 bits, and a copy.
     limits.max_alloc = Some(2 * 8 * MAX_PIXELS);
@@ -126,7 +142,7 @@ fn png(file: BufReader<File>) -> Result<Opened, ReadProblem> {
     })
 }
 
-fn exr(mut file: BufReader<File>) -> Result<Opened, ReadProblem> {
+fn exr(mut file: BufReader<File>, bytes: u64) -> Result<Opened, ReadProblem> {
     let headers = MetaData::read_from_buffered(&mut file, false)
         .map_err(exr_problem)?
         .headers;
@@ -136,7 +152,7 @@ fn exr(mut file: BufReader<File>) -> Result<Opened, ReadProblem> {
     };
     for header in &headers {
         let Vec2(width, height) = header.layer_size;
-        check_size(width as u64, height as u64)?;
+        check_size(width as u64, height as u64, bytes)?;
     }
     let has_other_primaries = headers
         .first()
@@ -204,9 +220,17 @@ fn put(picture: &mut Picture, Vec2(x, y): Vec2<usize>, color: Rgb) {
     picture.pixels[y * picture.size.x as usize + x] = color;
 }
 
-fn check_size(width: u64, height: u64) -> Result<(), ReadProblem> {
-    if width.saturating_mul(height) > MAX_PIXELS {
+fn check_size(width: u64, height: u64, bytes: u64) -> Result<(), ReadProblem> {
+    let pixels = width.saturating_mul(height);
+    if pixels > MAX_PIXELS {
         return Err(ReadProblem::TooLarge { width, height });
+    }
+    if pixels > bytes.saturating_mul(MOST_PIXELS_PER_BYTE) {
+        return Err(ReadProblem::TooShort {
+            width,
+            height,
+            bytes,
+        });
     }
     Ok(())
 }

@@ -251,6 +251,17 @@ fn a_small_file_cannot_claim_more_pixels_than_a_picture_has() {
     );
 }
 
+/// Found by fuzzing: 541 bytes took 3 GB.
+#[test]
+fn a_file_cannot_claim_more_pixels_than_its_bytes_can_hold() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/fuzz/seeds/exr/many-pixels");
+    let error = problem(Path::new(path));
+    assert!(
+        matches!(error, ReadProblem::TooShort { bytes: 541, .. }),
+        "{error}"
+    );
+}
+
 /// CRC-32 of PNG (ISO 15948, annex D), bit by bit.
 fn crc32(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(!0, |crc: u32, &byte| {
