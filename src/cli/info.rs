@@ -5,11 +5,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use halfshade::bvh::Builder;
-use halfshade::film::Rect;
 use halfshade::import::{Imported, Warning, Warnings, import};
 use halfshade::light::Light;
 use halfshade::prepare::prepare_keeping;
-use halfshade::render::{self, Job};
 use halfshade::scene::{Keep, LeftOut, Scene};
 use serde::Serialize;
 
@@ -123,16 +121,7 @@ impl Info {
         let mut warnings: Warnings = imported.warnings.clone();
         warnings.extend(prepared.warnings);
         let added = imported.defaults.as_ref();
-        let mut left_out = [imported.left_out.as_slice(), &prepared.left_out].concat();
-        if let Some(camera) = scene.cameras.first() {
-            left_out.extend(render::left_out(&Job {
-                scene: &prepared.scene,
-                camera: prepared.scene.camera(camera),
-                settings: &imported.settings,
-                crop: Rect::full(imported.settings.size),
-                layers: Vec::new(),
-            }));
-        }
+        let left_out = [imported.left_out.as_slice(), &prepared.left_out].concat();
         Self {
             triangles: scene.triangle_count(),
             vertices: scene

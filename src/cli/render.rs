@@ -16,7 +16,7 @@ use halfshade::output::denoise::{Denoiser, LIBRARY_VARIABLE};
 use halfshade::output::exr::Window;
 use halfshade::prepare::{Prepared, PreparedScene, prepare_keeping};
 use halfshade::render::stability::Stability;
-use halfshade::render::{self, Event, Job, Limits, Significant, render_within, replay};
+use halfshade::render::{Event, Job, Limits, Significant, render_within, replay};
 use halfshade::scene::{LeftOut, Placed, Scene, Settings};
 
 use super::Failure;
@@ -165,9 +165,7 @@ impl Work<'_> {
         let (options, imported) = (self.options, self.imported);
         let (settings, console) = (&imported.settings, options.console);
         let job = self.job(camera);
-        let mut left_out = self.left_out.clone();
-        left_out.extend(render::left_out(&job));
-        for entry in &left_out {
+        for entry in &self.left_out {
             console.detail(format_args!("left out: {}", LeftOutLine(entry)));
         }
         memory::check(&job, &options.output.layers)?;
@@ -208,7 +206,7 @@ impl Work<'_> {
             seed: settings.sampling.seed,
             seconds: self.seconds,
             error: film.error(),
-            left_out: &left_out,
+            left_out: &self.left_out,
             stability: &stability,
         };
         finish(options, targets, number, &done)

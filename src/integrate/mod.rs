@@ -48,9 +48,6 @@ pub trait Integrator: Sync {
             radiances.push(self.radiance(&sample.ray, &sample.sampler, log));
         }
     }
-
-    /// What [`Self::radiance`] is along every ray that meets nothing: black where the background is transparent.
-    fn background(&self) -> Rgb;
 }
 
 /// The technique that `settings` ask for.

@@ -136,8 +136,4 @@ impl Integrator for View<'_> {
             _ => value,
         }
     }
-
-    fn background(&self) -> Rgb {
-        Rgb::BLACK
-    }
 }

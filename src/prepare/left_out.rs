@@ -1,8 +1,6 @@
 //! What the rays of a scene do not need.
 
-use super::{Placement, PreparedScene};
-use crate::light::Light;
-use crate::math::{Aabb, DVec3};
+use super::PreparedScene;
 use crate::scene::{Keep, LeftOut, Omission, Scene};
 
 /// The numbers of the lights that have any power, or with [`Omission::Lights`] in `keep` of all.
@@ -12,16 +10,6 @@ pub fn shining(scene: &Scene, keep: Keep) -> Vec<u32> {
     (0..scene.lights.len() as u32)
         .filter(|&i| keeps_black || !scene.lights[i as usize].item.is_black())
         .collect()
-}
-
-/// The box around the scene between the corners `bounds`, in the world, and its visible `lights`.
-pub fn meetable(bounds: Option<(DVec3, DVec3)>, placement: &Placement, lights: &[Light]) -> Aabb {
-    let scene = bounds.map(|(min, max)| [min, max].map(|corner| placement.point(corner)));
-    let lights = lights.iter().filter_map(Light::bounds);
-    lights.fold(
-        Aabb::of_points(scene.into_iter().flatten()),
-        |all, light| all.union(light),
-    )
 }
 
 /// What was left out of `prepared`, but for what `keep` holds.

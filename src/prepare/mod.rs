@@ -24,7 +24,7 @@ use crate::color::Rgb;
 use crate::import::{WarningCode, Warnings};
 use crate::light::Light;
 use crate::material::{Bsdf, Material};
-use crate::math::{Aabb, DAffine3, DVec3, Mat3, Ray, RayRow, UnitVec3, Vec3, gamma};
+use crate::math::{DAffine3, DVec3, Mat3, Ray, RayRow, UnitVec3, Vec3, gamma};
 use crate::scene::{Background, Keep, LeftOut, MeshId, Omission, Placed, Scene};
 
 pub use defects::{Defects, NEEDLE_ASPECT};
@@ -46,8 +46,6 @@ pub struct PreparedScene<'a> {
     pub lights: Vec<Light>,
     /// The numbers of those that shading points are lit by, in rising order.
     pub shining: Vec<u32>,
-    /// A box around everything that rays can meet; `None` where that is not asked for.
-    pub bounds: Option<Aabb>,
     /// What rays bring back that leave the scene.
     pub background: Background,
     geometry: Geometry,
@@ -117,9 +115,6 @@ fn prepare_all(scene: &Scene, builder: Builder, flatten_budget: u64, keep: Keep)
     let prepared = PreparedScene {
         scene,
         placement,
-        // Nothing is known of a pixel that sees the environment.
-        bounds: (!keep.contains(Omission::Background) && scene.environment.is_none())
-            .then(|| left_out::meetable(bounds, &placement, &lights)),
         lights,
         shining: left_out::shining(scene, keep),
         background: scene.background,

@@ -6,7 +6,6 @@
 //! the same bits, unless the clock ends it.
 
 mod allot;
-mod backdrop;
 mod course;
 mod decay;
 mod difficulty;
@@ -27,12 +26,10 @@ use crate::integrate::{Account, Aov, Integrator, LightGroups, LightPart, integra
 use crate::prepare::PreparedScene;
 use crate::scene::Settings;
 
-pub use backdrop::left_out;
 pub use forecast::{Forecast, Significant};
 pub use replay::{Replay, ReplayedRay, replay};
 
 use allot::Outcome;
-use backdrop::Foreground;
 use course::{Course, Step, aim_all, dealt, round};
 use decay::Decay;
 use forecast::{Bounds, Pace};
@@ -172,7 +169,6 @@ pub fn render_within(
         job,
         limits,
         integrator: integrator(job.scene, job.settings),
-        foreground: Foreground::of(job),
         account: job.account(),
         cancel,
         observe,
@@ -192,7 +188,6 @@ struct Run<'a> {
     job: &'a Job<'a>,
     limits: &'a Limits,
     integrator: Box<dyn Integrator + 'a>,
-    foreground: Foreground,
     account: Option<Account>,
     cancel: &'a AtomicBool,
     observe: &'a (dyn Fn(Event) + Sync),
@@ -319,10 +314,10 @@ impl Run<'_> {
     fn pass(&mut self, deadline: Option<Instant>) -> Option<StoppedBy> {
         let stop = Stop::new(self.cancel, deadline);
         let (job, integrator, observe) = (self.job, self.integrator.as_ref(), self.observe);
-        let (foreground, account) = (&self.foreground, self.account.as_ref());
+        let account = self.account.as_ref();
         let (done, total) = (&self.done, self.total.load(Ordering::Relaxed));
         self.tiles.par_iter_mut().for_each(|tile| {
-            let taken = tile.render(job, integrator, foreground, account, &stop);
+            let taken = tile.render(job, integrator, account, &stop);
             let done = done.fetch_add(taken, Ordering::Relaxed) + taken;
             let total = total.max(done);
             observe(Event::Progress(Progress { done, total }));

@@ -1,14 +1,11 @@
 //! A square of the film: its pixels take samples until each half has as many as it aims at.
 
 use super::Job;
-use super::backdrop::Foreground;
 use super::stop::Stop;
 use crate::camera::{CameraRays, film_position};
 use crate::color::Rgb;
 use crate::film::{CutOff, ErrorSums, Film, Pixel, RayCounts, Rect, RejectedSample, StoppedBy};
-use crate::integrate::{
-    Account, Aov, CameraSample, FirstSurface, Integrator, RayLog, Sight, Source,
-};
+use crate::integrate::{Account, Aov, CameraSample, FirstSurface, Integrator, RayLog, Sight};
 use crate::math::{ROW, Ray, UVec2, Vec2, morton_pixel};
 use crate::sampling::Sampler;
 
@@ -75,7 +72,6 @@ impl Tile {
         &mut self,
         job: &Job,
         integrator: &dyn Integrator,
-        foreground: &Foreground,
         account: Option<&Account>,
         stop: &Stop,
     ) -> u64 {
@@ -83,17 +79,11 @@ impl Tile {
             return 0;
         }
         let mut batch = Batch::new(job, integrator, account);
-        // What a sample tells that sees nothing but the background.
-        let beyond = account.cloned().map(|mut account| {
-            account.add(Source::Background, 0, integrator.background());
-            account
-        });
         let mut done = 0;
         'pixels: for (i, pixel) in self.pixels_by_neighbourhood() {
             if self.taken[i] == self.goal[i] {
                 continue;
             }
-            let is_beyond = foreground.is_beyond(pixel);
             for half in 0..2 {
                 let numbers = self.taken[i][half]..self.goal[i][half];
                 if numbers.is_empty() {
@@ -105,15 +95,6 @@ impl Tile {
                         break 'pixels;
                     }
                     done += 1;
-                    if is_beyond {
-                        batch.log.counts.camera += 1;
-                        self.pixels[i].add_sample(half, integrator.background());
-                        if let Some(account) = &beyond {
-                            self.add_layers(job, [i, half], None, account);
-                        }
-                        self.taken[i][half] += 1;
-                        continue;
-                    }
                     batch.add(Place { i, half, pixel }, first.at(number));
                     if batch.places.len() == BATCH {
                         self.take(job, &mut batch);
@@ -148,7 +129,7 @@ impl Tile {
             let Place { i, half, pixel } = *place;
             if self.pixels[i].add_sample(half, *value) {
                 if let Some(account) = batch.log.accounts.get(number) {
-                    self.add_layers(job, [i, half], Some(&sample.ray), account);
+                    self.add_layers(job, [i, half], &sample.ray, account);
                 }
             } else {
                 self.rejected += 1;
@@ -162,20 +143,13 @@ impl Tile {
         batch.samplers.clear();
     }
 
-    /// Adds what `account` tells of a sample along `ray` to the layers, at a pixel's number and half; `None`
-    /// for a ray that is known to meet nothing.
-    fn add_layers(
-        &mut self,
-        job: &Job,
-        [i, half]: [usize; 2],
-        ray: Option<&Ray>,
-        account: &Account,
-    ) {
+    /// Adds what `account` tells of a sample along `ray` to the layers, at a pixel's number and half.
+    fn add_layers(&mut self, job: &Job, [i, half]: [usize; 2], ray: &Ray, account: &Account) {
         let first = account.seen.first().map(|seen| seen.sight);
-        let first = ray.map(|ray| FirstSurface::of(job.scene, ray, first));
+        let first = FirstSurface::of(job.scene, ray, first);
         for (layer, aov) in self.layers.iter_mut().zip(&job.layers) {
             let value = match *aov {
-                Aov::View(kind) => first.as_ref().map_or([0.0; 3], |first| first.value(kind)),
+                Aov::View(kind) => first.value(kind),
                 Aov::Coverage => [account.coverage(); 3],
                 Aov::Light(part) => account.light(part).channels(),
                 Aov::Objects => continue,

@@ -67,21 +67,18 @@ pub enum Omission {
     Attributes,
     /// Samples of lights without power.
     Lights,
-    /// Lookups of opacity where surfaces are opaque.
+    /// Lookups of opacity where surfaces are opaque; without them shadow rays go in packets.
     Opacity,
-    /// Rays of pixels that see nothing but the background.
-    Background,
 }
 
 impl Omission {
     /// All of them.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 5] = [
         Self::Meshes,
         Self::Images,
         Self::Attributes,
         Self::Lights,
         Self::Opacity,
-        Self::Background,
     ];
 }
 

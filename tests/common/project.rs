@@ -14,7 +14,7 @@ use halfshade::film::{Film, Rect};
 use halfshade::import::{Imported, SceneOptions, import};
 use halfshade::integrate::Aov;
 use halfshade::prepare::{PreparedScene, prepare, prepare_keeping};
-use halfshade::render::{self, Job, render};
+use halfshade::render::{Job, render};
 use halfshade::scene::{Keep, LeftOut};
 
 /// Changes of a scene file: paths and values.
@@ -42,7 +42,7 @@ pub fn film_keeping(imported: &Imported, layers: Vec<Aov>, keep: Keep) -> (Film,
     let film = render(&job, &AtomicBool::new(false), &|_| {});
     let loaded = [&imported.left_out, &prepared.left_out];
     let left_out = loaded.into_iter().flatten().cloned();
-    (film, left_out.chain(render::left_out(&job)).collect())
+    (film, left_out.collect())
 }
 
 /// The whole film, as the first camera sees it.

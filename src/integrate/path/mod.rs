@@ -194,12 +194,4 @@ impl Integrator for PathTracer<'_> {
         }
         total
     }
-
-    fn background(&self) -> Rgb {
-        if self.is_transparent {
-            Rgb::BLACK
-        } else {
-            self.scene.background.radiance
-        }
-    }
 }

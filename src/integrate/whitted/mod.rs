@@ -437,12 +437,4 @@ impl Integrator for Whitted<'_> {
             *radiance += lit;
         }
     }
-
-    fn background(&self) -> Rgb {
-        if self.is_transparent {
-            Rgb::BLACK
-        } else {
-            self.scene.background.radiance
-        }
-    }
 }
