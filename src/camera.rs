@@ -1,6 +1,6 @@
 //! Cameras: from a point on the film to a ray.
 
-use crate::math::{Mat3, ROW, Ray, RowJob, UVec2, UnitVec3, Vec2, Vec3, VectorRow, widely};
+use crate::math::{Mat3, ROW, Ray, RayRow, RowJob, UVec2, UnitVec3, Vec2, Vec3, widely};
 
 /// A camera at a place, looking along a direction.
 #[derive(Clone, Copy, Debug)]
@@ -123,12 +123,13 @@ pub struct CameraRays<'a> {
 }
 
 impl CameraRays<'_> {
-    /// [`Self::at`] of each place of a row, origins and directions.
-    pub fn row(&self, film: &[Vec2; ROW], lens: &[Vec2; ROW]) -> [VectorRow; 2] {
-        widely(CameraRow {
+    /// [`Self::at`] of the first `count` places of a row.
+    pub fn row(&self, film: &[Vec2; ROW], lens: &[Vec2; ROW], count: usize) -> RayRow {
+        widely(RaysAt {
             rays: self,
             film,
             lens,
+            count,
         })
     }
 
@@ -160,24 +161,25 @@ impl CameraRays<'_> {
     }
 }
 
-struct CameraRow<'a> {
+struct RaysAt<'a> {
     rays: &'a CameraRays<'a>,
     film: &'a [Vec2; ROW],
     lens: &'a [Vec2; ROW],
+    count: usize,
 }
 
-impl RowJob for CameraRow<'_> {
-    type Output = [VectorRow; 2];
+impl RowJob for RaysAt<'_> {
+    type Output = RayRow;
 
     #[inline(always)]
-    fn call(self) -> [VectorRow; 2] {
-        let [mut origins, mut directions] = [VectorRow::ZERO; 2];
+    fn call(self) -> RayRow {
+        let mut rays = RayRow::endless(self.count);
         for i in 0..ROW {
             let ray = self.rays.at(self.film[i], self.lens[i]);
-            origins.set(i, ray.origin);
-            directions.set(i, ray.direction);
+            rays.origins.set(i, ray.origin);
+            rays.directions.set(i, ray.direction);
         }
-        [origins, directions]
+        rays
     }
 }
 

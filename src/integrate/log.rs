@@ -103,6 +103,11 @@ impl RayLog {
         }
     }
 
+    /// Whether somebody listens, or nothing but counts is asked for.
+    pub fn is_heard(&self) -> bool {
+        self.records.is_some() || self.is_told()
+    }
+
     /// What follows is told of the sample at this place among those that are traced together.
     pub fn turn_to(&mut self, place: usize) {
         self.sample = place;

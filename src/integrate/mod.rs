@@ -18,18 +18,32 @@ pub use whitted::Whitted;
 
 use crate::color::Rgb;
 use crate::light::Light;
-use crate::math::Ray;
+use crate::math::{ROW, Ray, RayRow};
 use crate::prepare::PreparedScene;
-use crate::sampling::{Pattern, Sampler};
+use crate::sampling::{Pattern, Sampler, SamplerRow};
 use crate::scene::{IntegratorKind, Settings};
 
-/// Where a sample of a pixel begins.
-#[derive(Clone, Copy, Debug)]
-pub struct CameraSample {
-    /// Its ray from the camera.
-    pub ray: Ray,
-    /// Its other numbers.
-    pub sampler: Sampler,
+/// Where up to [`ROW`] samples of pixels begin.
+#[derive(Clone, Debug)]
+pub struct CameraRow {
+    /// Their rays from the camera.
+    pub rays: RayRow,
+    /// Their other numbers, as many.
+    pub samplers: SamplerRow,
+}
+
+impl CameraRow {
+    /// No samples.
+    pub const EMPTY: Self = Self {
+        rays: RayRow::EMPTY,
+        samplers: SamplerRow::EMPTY,
+    };
+
+    /// Their rays and samplers.
+    pub fn iter(&self) -> impl Iterator<Item = (Ray, Sampler)> {
+        let sample = |i| Some((self.rays.get(i), self.samplers.get(i)?));
+        (0..self.rays.count()).map_while(sample)
+    }
 }
 
 /// A technique: what light, or what else, comes back along a ray.
@@ -40,12 +54,12 @@ pub trait Integrator: Sync {
     /// the camera sees and where the light comes from.
     fn radiance(&self, ray: &Ray, sampler: &Sampler, log: &mut RayLog) -> Rgb;
 
-    /// [`Self::radiance`] of each of `samples`, appended to `radiances`, with the same bits. Samples of near
+    /// [`Self::radiance`] of each of `samples`, put into the first of `radiances`, with the same bits. Samples of near
     /// places of the film may be quicker together than one by one.
-    fn radiances(&self, samples: &[CameraSample], radiances: &mut Vec<Rgb>, log: &mut RayLog) {
-        for (place, sample) in samples.iter().enumerate() {
+    fn radiances(&self, samples: &CameraRow, radiances: &mut [Rgb; ROW], log: &mut RayLog) {
+        for (place, (ray, sampler)) in samples.iter().enumerate() {
             log.turn_to(place);
-            radiances.push(self.radiance(&sample.ray, &sample.sampler, log));
+            radiances[place] = self.radiance(&ray, &sampler, log);
         }
     }
 }

@@ -82,12 +82,13 @@ impl DiskLight {
     }
 
     /// See [`super::Light::met`].
+    #[inline(always)]
     pub fn met(&self, ray: &Ray) -> Option<(f32, Rgb)> {
         let center = self.center.as_dvec3() - ray.origin.as_dvec3();
-        let (t, from_center) = plane_hit(ray, center, self.normal.as_dvec3())?;
+        let met = plane_hit(ray, center, self.normal.as_dvec3());
         let radius = f64::from(self.radius);
-        (!self.is_delta() && from_center.length_squared() <= radius * radius)
-            .then_some((t, self.radiance))
+        let is_inside = met.from_center.length_squared() <= radius * radius;
+        (met.is_hit & is_inside & !self.is_delta()).then_some((met.t, self.radiance))
     }
 }
 

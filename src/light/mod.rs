@@ -280,12 +280,28 @@ fn shadow_point(point: DVec3) -> Vec3 {
     point.clamp(-largest, largest).as_vec3()
 }
 
-/// Where `ray` meets, from the front, the plane through `center` (relative to the ray's origin)
-/// across `normal`, of any length: the ray's parameter there, and the place relative to `center`.
-fn plane_hit(ray: &Ray, center: DVec3, normal: DVec3) -> Option<(f32, DVec3)> {
+/// Where a ray meets a plane.
+struct PlaneHit {
+    /// Whether it does, from the front; else the rest means nothing.
+    is_hit: bool,
+    /// The ray's parameter there.
+    t: f32,
+    /// The place.
+    from_center: DVec3,
+}
+
+/// Where `ray` meets the plane through `center` (relative to the ray's origin) across `normal`, of any length.
+///
+/// Without a branch, for rows of rays.
+#[inline(always)]
+fn plane_hit(ray: &Ray, center: DVec3, normal: DVec3) -> PlaneHit {
     let direction = ray.direction.as_dvec3();
     let approach = direction.dot(normal);
     let exact_t = center.dot(normal) / approach;
     let t = exact_t as f32;
-    (approach < 0.0 && t > ray.t_min && t < ray.t_max).then(|| (t, direction * exact_t - center))
+    PlaneHit {
+        is_hit: (approach < 0.0) & (t > ray.t_min) & (t < ray.t_max),
+        t,
+        from_center: direction * exact_t - center,
+    }
 }

@@ -119,11 +119,11 @@ impl RectangleLight {
     pub fn met(&self, ray: &Ray) -> Option<(f32, Rgb)> {
         let edges = self.edges()?;
         let center = self.center.as_dvec3() - ray.origin.as_dvec3();
-        let (t, from_center) = plane_hit(ray, center, edges.cross)?;
+        let met = plane_hit(ray, center, edges.cross);
         // from_center = u half_u + v half_v, by Cramer's rule.
         let square = edges.cross.length_squared();
-        let u = from_center.cross(edges.half_v).dot(edges.cross) / square;
-        let v = edges.half_u.cross(from_center).dot(edges.cross) / square;
-        (u.abs() <= 1.0 && v.abs() <= 1.0).then_some((t, self.radiance))
+        let u = met.from_center.cross(edges.half_v).dot(edges.cross) / square;
+        let v = edges.half_u.cross(met.from_center).dot(edges.cross) / square;
+        (met.is_hit && u.abs() <= 1.0 && v.abs() <= 1.0).then_some((met.t, self.radiance))
     }
 }

@@ -1,8 +1,11 @@
-//! Samples of one light for a row of points.
+//! Rows of points that look at one light, and rows of rays that may meet it.
 
-use super::{Light, LightSample, ShadowEnd};
+use super::{DiskLight, Light, LightSample, ShadowEnd};
 use crate::color::Rgb;
-use crate::math::{FEW, ROW, UnitVec3, Vec2, Vec3, VectorRow};
+use crate::math::{
+    FEW, ROW, RayRow, Row, RowJob, UnitVec3, Vec2, Vec3, VectorRow, first_places, places,
+    those_where, widely,
+};
 
 /// [`Light::sample`] of each point of a row.
 #[derive(Debug)]
@@ -76,24 +79,70 @@ impl LightSampleRow {
 }
 
 impl Light {
-    /// One sample of the light, as seen from each of the first `count` of `points`, for `u` in `[0, 1)²`: the same
-    /// bits as [`Light::sample`] gives. What `samples` holds beyond `count` means nothing.
+    /// One sample of the light as seen from each of `points` with a bit in `of`, for `u` in `[0, 1)²`: the same
+    /// bits as [`Light::sample`] gives. What `samples` holds of others means nothing.
     pub fn sample_row(
         &self,
         points: &VectorRow,
         u: &[Vec2; ROW],
-        count: usize,
+        of: u64,
         samples: &mut LightSampleRow,
     ) {
-        if let Light::Disk(light) = self
-            && count >= FEW
-        {
-            *samples = light.sample_row(points, u);
-            return;
-        }
         samples.has_direction = matches!(self, Light::Distant(_));
-        for (i, u) in u[..count].iter().enumerate() {
-            samples.set(i, self.sample(points.get(i), *u));
+        match self {
+            Light::Disk(light) if of.count_ones() as usize >= FEW => {
+                *samples = light.sample_row(points, u);
+            }
+            _ => {
+                for i in places(of) {
+                    samples.set(i, self.sample(points.get(i), u[i]));
+                }
+            }
         }
+    }
+
+    /// A bit for each of `rays` that meets the light ([`Light::emitted`]) before it `ends`.
+    pub fn are_met_by(&self, rays: &RayRow, ends: &Row) -> u64 {
+        let all = first_places(rays.count());
+        if !self.is_visible() {
+            return 0;
+        }
+        match self {
+            Light::Disk(light) if rays.count() >= FEW => {
+                those_where(&widely(Meet { light, rays, ends })) & all
+            }
+            _ => {
+                let meets = |&i: &usize| {
+                    let met = self.emitted(&rays.get(i));
+                    met.is_some_and(|(t, _)| is_between(t, ends[i]))
+                };
+                places(all).filter(meets).fold(0, |all, i| all | 1 << i)
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn is_between(t: f32, end: f32) -> bool {
+    (t > 0.0) & (t < end)
+}
+
+struct Meet<'a> {
+    light: &'a DiskLight,
+    rays: &'a RayRow,
+    ends: &'a Row,
+}
+
+impl RowJob for Meet<'_> {
+    type Output = [bool; ROW];
+
+    #[inline(always)]
+    fn call(self) -> [bool; ROW] {
+        let mut all = [false; ROW];
+        for (i, is_met) in all.iter_mut().enumerate() {
+            let met = self.light.met(&self.rays.get(i));
+            *is_met = met.is_some_and(|(t, _)| is_between(t, self.ends[i]));
+        }
+        all
     }
 }

@@ -20,5 +20,7 @@ pub use glam::{Affine2, DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, Mat3, UVec2
 pub use morton::morton_pixel;
 pub use ray::Ray;
 pub use rounding::{ONE_MINUS_EPSILON, UNIT_ROUNDOFF, gamma};
-pub use rows::{FEW, ROW, RayRow, Row, RowJob, VectorRow, widely};
+pub use rows::{
+    FEW, ROW, RayRow, Row, RowJob, VectorRow, first_places, places, those_where, widely,
+};
 pub use unit::UnitVec3;

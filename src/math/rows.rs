@@ -79,15 +79,37 @@ impl RayRow {
         self.count
     }
 
+    /// `count` rays without an end, whose origins and directions are still to be set.
+    #[inline(always)]
+    pub fn endless(count: usize) -> Self {
+        Self {
+            t_max: [f32::INFINITY; ROW],
+            count,
+            ..Self::EMPTY
+        }
+    }
+
     /// Adds a ray; there must be room.
     #[inline(always)]
     pub fn push(&mut self, ray: &Ray) {
-        let i = self.count;
+        self.set(self.count, ray);
+        self.count += 1;
+    }
+
+    #[inline(always)]
+    fn set(&mut self, i: usize, ray: &Ray) {
         self.origins.set(i, ray.origin);
         self.directions.set(i, ray.direction);
         self.t_min[i] = ray.t_min;
         self.t_max[i] = ray.t_max;
-        self.count += 1;
+    }
+
+    /// Keeps the rays with a bit in `of`, and moves them together.
+    pub fn keep(&mut self, of: u64) {
+        self.count = of.count_ones() as usize;
+        for (to, from) in places(of).enumerate().filter(|(to, from)| to != from) {
+            self.set(to, &self.get(from));
+        }
     }
 
     /// Ray `i`.
@@ -114,4 +136,28 @@ impl<'a> FromIterator<&'a Ray> for RayRow {
 /// Runs `job` compiled for the widest vectors of the processor; the result has the same bits with all.
 pub fn widely<J: RowJob>(job: J) -> J::Output {
     Arch::new().dispatch(job)
+}
+
+/// A bit for each of the first `count` samples of a row.
+#[inline(always)]
+pub fn first_places(count: usize) -> u64 {
+    u64::MAX.checked_shr((ROW - count) as u32).unwrap_or(0)
+}
+
+/// The places of the bits of `row`, in rising order.
+#[inline(always)]
+pub fn places(mut row: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        (row != 0).then(|| {
+            let place = row.trailing_zeros() as usize % ROW;
+            row &= row - 1;
+            place
+        })
+    })
+}
+
+/// A bit for each sample of which this is so.
+#[inline(always)]
+pub fn those_where(is_so: &[bool; ROW]) -> u64 {
+    (0..ROW).fold(0, |all, i| all | u64::from(is_so[i]) << i)
 }

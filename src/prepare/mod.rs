@@ -23,7 +23,6 @@ use crate::camera::Camera;
 use crate::color::Rgb;
 use crate::import::{WarningCode, Warnings};
 use crate::light::Light;
-use crate::material::{Bsdf, Material};
 use crate::math::{DAffine3, DVec3, Mat3, Ray, RayRow, UnitVec3, Vec3, gamma};
 use crate::scene::{Background, Keep, LeftOut, MeshId, Omission, Placed, Scene};
 
@@ -32,6 +31,7 @@ pub use emission::{EmissiveRun, TriangleId};
 use geometry::Geometry;
 pub use leaks::Leaks;
 pub use placement::Placement;
+use plain::PlainMaterial;
 pub use plain::PlainRow;
 pub use surface::Surface;
 
@@ -53,8 +53,8 @@ pub struct PreparedScene<'a> {
     normal_matrices: Vec<Mat3>,
     /// Per instance of the scene: -1 where its transform mirrors, else 1.
     orientation: Vec<f32>,
-    /// Per material: how it scatters light, where it is plain.
-    plain: Vec<Option<Bsdf>>,
+    /// Per material, where it is plain.
+    plain: Vec<Option<PlainMaterial>>,
     /// Whether blockers are asked for their opacity.
     has_transparency: bool,
 }
@@ -128,7 +128,7 @@ fn prepare_all(scene: &Scene, builder: Builder, flatten_budget: u64, keep: Keep)
             .iter()
             .map(|i| i.transform.matrix3.determinant().signum() as f32)
             .collect(),
-        plain: scene.materials.iter().map(Material::plain).collect(),
+        plain: scene.materials.iter().map(PlainMaterial::of).collect(),
         has_transparency: asks_all || !scene.instances.iter().all(|i| scene.is_opaque(i)),
         geometry,
     };

@@ -4,29 +4,90 @@
 use super::PreparedScene;
 use super::facet::{Facet, bulge, smooth_normal};
 use super::geometry::Placing;
-use crate::bvh::Hit;
+use super::surface::part_of;
+use crate::bvh::HitRow;
+use crate::color::Rgb;
 use crate::interaction::LitSide;
-use crate::material::Bsdf;
-use crate::math::{DVec3, FEW, ROW, Ray, Row, RowJob, UnitVec3, VectorRow, widely};
+use crate::material::{Bsdf, Material};
+use crate::math::{
+    DVec3, FEW, ROW, RayRow, Row, RowJob, UnitVec3, Vec3, VectorRow, places, widely,
+};
 
-/// Hits on plain surfaces, and what shading reads there.
+/// A plain material, and what is read of it most.
+#[derive(Debug)]
+pub struct PlainMaterial {
+    /// How it scatters light.
+    pub bsdf: Bsdf,
+    /// [`Bsdf::diffuse`].
+    diffuse: Rgb,
+    /// [`Bsdf::matte`].
+    matte: Option<Rgb>,
+}
+
+impl PlainMaterial {
+    /// `material`, if it is plain.
+    pub(super) fn of(material: &Material) -> Option<Self> {
+        material.plain().map(|bsdf| Self {
+            diffuse: bsdf.diffuse(),
+            matte: bsdf.matte(),
+            bsdf,
+        })
+    }
+}
+
+/// Those hits of a row of rays that are on plain surfaces, and what shading reads there; each at the place of its
+/// ray.
 #[derive(Debug)]
 pub struct PlainRow {
-    /// Hits are 0 to this.
-    count: usize,
-    /// Their materials.
+    /// A bit for each of them.
+    places: u64,
+    faces: FaceRow,
+    seen: SeenRow,
+}
+
+/// The triangles that were hit, and their materials.
+#[derive(Debug)]
+struct FaceRow {
     materials: [u32; ROW],
     corners: [VectorRow; 3],
-    /// Weights of the second and third corner.
-    weights: [Row; 2],
-    /// Against the direction of the rays.
-    back: VectorRow,
     orientation: Row,
     /// Vertex normals by corner, where some mesh has them.
     normals: [VectorRow; 3],
     has_normals: [bool; ROW],
     is_smooth: bool,
-    seen: SeenRow,
+    /// [`Bsdf::diffuse`].
+    diffuse: VectorRow,
+    /// [`Bsdf::matte`].
+    matte: VectorRow,
+    /// A bit for each that is not matte.
+    glossy: u64,
+}
+
+impl FaceRow {
+    const NONE: Self = Self {
+        materials: [0; ROW],
+        corners: [VectorRow::ZERO; 3],
+        orientation: [1.0; ROW],
+        normals: [VectorRow::ZERO; 3],
+        has_normals: [false; ROW],
+        is_smooth: false,
+        diffuse: VectorRow::ZERO,
+        matte: VectorRow::ZERO,
+        glossy: 0,
+    };
+
+    /// Makes the face at place `to` the one at place `from`.
+    fn copy(&mut self, from: usize, to: usize) {
+        self.materials[to] = self.materials[from];
+        self.orientation[to] = self.orientation[from];
+        self.has_normals[to] = self.has_normals[from];
+        self.glossy |= (self.glossy >> from & 1) << to;
+        let rows = [&mut self.diffuse, &mut self.matte];
+        let normals = self.normals.iter_mut().filter(|_| self.is_smooth);
+        for row in self.corners.iter_mut().chain(normals).chain(rows) {
+            row.set(to, row.get(from));
+        }
+    }
 }
 
 /// [`LitSide`]s by field, and where the viewer is.
@@ -49,41 +110,30 @@ impl SeenRow {
         shading_normal: VectorRow::Z,
         wo: VectorRow::Z,
     };
+
+    #[inline(always)]
+    fn set(&mut self, i: usize, at: &LitSide, wo: UnitVec3) {
+        self.point.set(i, at.point);
+        self.shadow_origin.set(i, at.shadow_origin);
+        self.is_bulging[i] = at.is_bulging;
+        self.geometric_normal.set(i, *at.geometric_normal);
+        self.shading_normal.set(i, *at.shading_normal);
+        self.wo.set(i, *wo);
+    }
 }
 
 impl PlainRow {
-    /// Without hits.
-    pub const EMPTY: Self = Self {
-        count: 0,
-        materials: [0; ROW],
-        corners: [VectorRow::ZERO; 3],
-        weights: [[0.0; ROW]; 2],
-        back: VectorRow::ZERO,
-        orientation: [1.0; ROW],
-        normals: [VectorRow::ZERO; 3],
-        has_normals: [false; ROW],
-        is_smooth: false,
-        seen: SeenRow::NOWHERE,
-    };
-
-    /// Takes all hits out.
-    pub fn clear(&mut self) {
-        self.count = 0;
-        self.is_smooth = false;
+    /// A bit for each ray whose hit is on a plain surface.
+    pub fn places(&self) -> u64 {
+        self.places
     }
 
-    /// How many hits there are.
-    pub fn count(&self) -> usize {
-        self.count
-    }
-
-    /// The points that were hit, once they are [`PlainRow::locate`]d.
+    /// The points that were hit.
     pub fn points(&self) -> &VectorRow {
         &self.seen.point
     }
 
-    /// What lights need to know of hit `i`, once they are [`PlainRow::locate`]d: the same bits as in
-    /// [`PreparedScene::surface`].
+    /// What lights need to know of hit `i`: the same bits as in [`PreparedScene::surface`].
     #[inline(always)]
     pub fn lit_side(&self, i: usize) -> LitSide {
         let seen = &self.seen;
@@ -96,80 +146,92 @@ impl PlainRow {
         }
     }
 
-    /// Where the viewer of hit `i` is, once they are [`PlainRow::locate`]d.
+    /// Where the viewer of hit `i` is.
     #[inline(always)]
     pub fn wo(&self, i: usize) -> UnitVec3 {
         UnitVec3::from_normalized(self.seen.wo.get(i))
     }
 
-    /// Computes what shading reads at all hits; with `is_bulging` shadows start on the surface that vertex normals
-    /// describe.
-    pub fn locate(&mut self, is_bulging: bool) {
-        if self.count < FEW {
-            let mut seen = SeenRow::NOWHERE;
-            for i in 0..self.count {
-                self.locate_one::<true>(i, is_bulging, &mut seen);
-            }
-            self.seen = seen;
-        } else {
-            self.seen = widely(Locate(self, is_bulging));
-        }
+    /// [`Bsdf::diffuse`] of the surface at hit `i`.
+    pub fn diffuse(&self, i: usize) -> Rgb {
+        Rgb::from(self.faces.diffuse.get(i).to_array())
     }
 
+    /// [`Bsdf::matte`] of the surface at hit `i`; means nothing where it is glossy.
     #[inline(always)]
-    fn locate_one<const IS_SMOOTH: bool>(&self, i: usize, is_bulging: bool, seen: &mut SeenRow) {
+    pub fn matte(&self, i: usize) -> Rgb {
+        Rgb::from(self.faces.matte.get(i).to_array())
+    }
+
+    /// Whether the surface at hit `i` is not matte.
+    #[inline(always)]
+    pub fn is_glossy(&self, i: usize) -> bool {
+        self.faces.glossy >> i & 1 != 0
+    }
+
+    /// A bit for each hit on a surface that is not matte.
+    pub fn glossy(&self) -> u64 {
+        self.faces.glossy
+    }
+}
+
+/// Finds what shading reads.
+struct Locate<'a> {
+    faces: &'a FaceRow,
+    rays: &'a RayRow,
+    hits: &'a HitRow,
+    /// Whether shadows start on the surface that vertex normals describe.
+    is_bulging: bool,
+}
+
+impl Locate<'_> {
+    #[inline(always)]
+    fn locate<const IS_SMOOTH: bool>(&self, i: usize, seen: &mut SeenRow) {
+        let faces = self.faces;
         let corners: [DVec3; 3] = [
-            self.corners[0].get(i).as_dvec3(),
-            self.corners[1].get(i).as_dvec3(),
-            self.corners[2].get(i).as_dvec3(),
+            faces.corners[0].get(i).as_dvec3(),
+            faces.corners[1].get(i).as_dvec3(),
+            faces.corners[2].get(i).as_dvec3(),
         ];
-        let [u, v] = [self.weights[0][i], self.weights[1][i]];
-        let wo = UnitVec3::normalize(self.back.get(i)).unwrap_or(UnitVec3::Z);
-        let facet = Facet::new(&corners, u, v, wo, self.orientation[i]);
+        let (u, v) = (self.hits.u[i], self.hits.v[i]);
+        let wo = UnitVec3::normalize(-self.rays.directions.get(i)).unwrap_or(UnitVec3::Z);
+        let facet = Facet::new(&corners, u, v, wo, faces.orientation[i]);
         let (mut smooth, mut height) = (facet.outward, 0.0);
         if IS_SMOOTH {
             let normals = [
-                self.normals[0].get(i),
-                self.normals[1].get(i),
-                self.normals[2].get(i),
+                faces.normals[0].get(i),
+                faces.normals[1].get(i),
+                faces.normals[2].get(i),
             ];
             let weights = [1.0 - u - v, u, v];
             let normal = smooth_normal(&facet, &normals, weights);
             let bulge = bulge(&facet, &corners, &normals, weights);
-            smooth = if self.has_normals[i] { normal } else { smooth };
-            height = if self.has_normals[i] & is_bulging {
+            smooth = if faces.has_normals[i] { normal } else { smooth };
+            height = if faces.has_normals[i] & self.is_bulging {
                 bulge
             } else {
                 height
             };
         }
-        let at = facet.interaction(smooth, height, wo).lit_side();
-        seen.point.set(i, at.point);
-        seen.shadow_origin.set(i, at.shadow_origin);
-        seen.is_bulging[i] = at.is_bulging;
-        seen.geometric_normal.set(i, *at.geometric_normal);
-        seen.shading_normal.set(i, *at.shading_normal);
-        seen.wo.set(i, *wo);
+        let at = facet.interaction(smooth, height, wo);
+        seen.set(i, &at.lit_side(), wo);
     }
 }
-
-struct Locate<'a>(&'a PlainRow, bool);
 
 impl RowJob for Locate<'_> {
     type Output = SeenRow;
 
     #[inline(always)]
     fn call(self) -> SeenRow {
-        let Self(row, is_bulging) = self;
         let mut seen = SeenRow::NOWHERE;
-        // Past the last hit there is what was there before: no harm in computing it.
-        if row.is_smooth {
+        // Where there is no plain surface there is no harm in computing something.
+        if self.faces.is_smooth {
             for i in 0..ROW {
-                row.locate_one::<true>(i, is_bulging, &mut seen);
+                self.locate::<true>(i, &mut seen);
             }
         } else {
             for i in 0..ROW {
-                row.locate_one::<false>(i, is_bulging, &mut seen);
+                self.locate::<false>(i, &mut seen);
             }
         }
         seen
@@ -177,42 +239,89 @@ impl RowJob for Locate<'_> {
 }
 
 impl PreparedScene<'_> {
-    /// Adds `hit` of `ray` to `row` where the surface is plain; whether it is. There is room for [`ROW`].
-    pub fn add_plain(&self, row: &mut PlainRow, ray: &Ray, hit: &Hit) -> bool {
-        let traced = &self.geometry.traced[hit.instance as usize];
-        let (instance, triangle) = self.triangle(hit);
-        let is_flat = matches!(traced.placing, Placing::Flattened(_));
+    /// Those `hits` of `rays` with a bit in `of` that are on plain surfaces; with `is_bulging` shadows start
+    /// on the surface that vertex normals describe.
+    pub fn plain_hits(&self, rays: &RayRow, hits: &HitRow, of: u64, is_bulging: bool) -> PlainRow {
+        let mut row = PlainRow {
+            places: 0,
+            faces: FaceRow::NONE,
+            seen: SeenRow::NOWHERE,
+        };
+        let mut last: Option<usize> = None;
+        for i in places(of) {
+            let is_same = |&last: &usize| {
+                hits.triangle[i] == hits.triangle[last] && hits.instance[i] == hits.instance[last]
+            };
+            if let Some(last) = last.filter(is_same) {
+                row.faces.copy(last, i);
+            } else if !self.see_face(&mut row.faces, hits, i) {
+                continue;
+            }
+            last = Some(i);
+            row.places |= 1 << i;
+        }
+        let PlainRow {
+            places: of,
+            faces,
+            seen,
+        } = &mut row;
+        let job = Locate {
+            faces,
+            rays,
+            hits,
+            is_bulging,
+        };
+        if (of.count_ones() as usize) < FEW {
+            places(*of).for_each(|i| job.locate::<true>(i, seen));
+        } else {
+            *seen = widely(job);
+        }
+        row
+    }
+
+    /// Puts what hit `i` is on into `faces`, if it is plain; whether it is.
+    fn see_face(&self, faces: &mut FaceRow, hits: &HitRow, i: usize) -> bool {
+        let (instance, triangle) = (hits.instance[i], hits.triangle[i]);
+        let traced = &self.geometry.traced[instance as usize];
+        let Placing::Flattened(parts) = &traced.placing else {
+            return false;
+        };
+        let (instance, number) = part_of(parts, triangle);
         let of_scene = &self.scene.instances[instance as usize];
         let mesh = self.scene.mesh(of_scene.mesh);
-        let is_plain = self.plain[of_scene.material.0 as usize].is_some();
-        if !(is_flat && is_plain && mesh.colors().is_empty()) {
+        let material = of_scene.material.0;
+        let Some(plain) = &self.plain[material as usize] else {
+            return false;
+        };
+        if !mesh.colors().is_empty() {
             return false;
         }
-        let i = row.count;
-        row.count += 1;
         let tree = &self.geometry.trees[traced.tree as usize];
-        let corners = tree.indices[hit.triangle as usize];
-        for (row, corner) in row.corners.iter_mut().zip(corners) {
+        let corners = tree.indices[triangle as usize];
+        for (row, corner) in faces.corners.iter_mut().zip(corners) {
             row.set(i, tree.positions[corner as usize]);
         }
-        row.weights[0][i] = hit.u;
-        row.weights[1][i] = hit.v;
-        row.back.set(i, -ray.direction);
-        row.orientation[i] = self.orientation[instance as usize];
-        row.materials[i] = of_scene.material.0;
-        let normals = self.normals_of(instance, mesh, || mesh.indices()[triangle as usize]);
-        row.has_normals[i] = normals.is_some();
+        faces.orientation[i] = self.orientation[instance as usize];
+        faces.materials[i] = material;
+        faces.diffuse.set(i, Vec3::from(plain.diffuse.channels()));
+        match plain.matte {
+            Some(matte) => faces.matte.set(i, Vec3::from(matte.channels())),
+            None => faces.glossy |= 1 << i,
+        }
+        let normals = self.normals_of(instance, mesh, || mesh.indices()[number as usize]);
+        faces.has_normals[i] = normals.is_some();
         if let Some(normals) = normals {
-            row.is_smooth = true;
-            for (row, normal) in row.normals.iter_mut().zip(normals) {
+            faces.is_smooth = true;
+            for (row, normal) in faces.normals.iter_mut().zip(normals) {
                 row.set(i, normal);
             }
         }
         true
     }
 
-    /// How hit `i` of `row` scatters light.
+    /// How the surface at hit `i` of `row` scatters light.
     pub fn plain_bsdf(&self, row: &PlainRow, i: usize) -> Option<&Bsdf> {
-        self.plain[row.materials[i] as usize].as_ref()
+        let plain = self.plain[row.faces.materials[i] as usize].as_ref();
+        plain.map(|plain| &plain.bsdf)
     }
 }

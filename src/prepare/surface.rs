@@ -12,7 +12,7 @@ use crate::texture::{Encoding, TextureRef};
 
 use super::PreparedScene;
 use super::facet::{Facet, bulge, facing, smooth_normal};
-use super::geometry::Placing;
+use super::geometry::{Part, Placing};
 
 /// What a ray met: where, of what material, and what textures are read with.
 #[derive(Clone, Copy, Debug)]
@@ -149,15 +149,18 @@ fn mix4(a: [f32; 4], wa: f32, b: [f32; 4], wb: f32, c: [f32; 4], wc: f32) -> [f3
     std::array::from_fn(|i| a[i] * wa + b[i] * wb + c[i] * wc)
 }
 
+/// The number of the instance whose part of a flattened tree holds this `triangle`, and of its mesh's triangle.
+pub(super) fn part_of(parts: &[Part], triangle: u32) -> (u32, u32) {
+    let part = parts.partition_point(|p| p.first_triangle <= triangle) - 1;
+    let part = parts[part];
+    (part.instance, triangle - part.first_triangle)
+}
+
 impl<'a> PreparedScene<'a> {
     /// The number of the scene's instance that was hit, and of its mesh's triangle.
     pub(super) fn triangle(&self, hit: &Hit) -> (u32, u32) {
         match &self.geometry.traced[hit.instance as usize].placing {
-            Placing::Flattened(parts) => {
-                let part = parts.partition_point(|p| p.first_triangle <= hit.triangle) - 1;
-                let part = parts[part];
-                (part.instance, hit.triangle - part.first_triangle)
-            }
+            Placing::Flattened(parts) => part_of(parts, hit.triangle),
             Placing::Instanced { instance, .. } => (*instance, hit.triangle),
         }
     }

@@ -5,9 +5,9 @@ use super::stop::Stop;
 use crate::camera::{CameraRays, film_position};
 use crate::color::Rgb;
 use crate::film::{CutOff, ErrorSums, Film, Pixel, RayCounts, Rect, RejectedSample, StoppedBy};
-use crate::integrate::{Account, Aov, CameraSample, FirstSurface, Integrator, RayLog, Sight};
+use crate::integrate::{Account, Aov, CameraRow, FirstSurface, Integrator, RayLog, Sight};
 use crate::math::{ROW, Ray, UVec2, Vec2, morton_pixel};
-use crate::sampling::Sampler;
+use crate::sampling::{Sampler, Samplers};
 
 /// Pixels along the edge of a tile.
 pub(super) const TILE: u32 = 16;
@@ -78,6 +78,7 @@ impl Tile {
         if self.taken == self.goal {
             return 0;
         }
+        let samplers = Samplers::new(&job.settings.sampling);
         let mut batch = Batch::new(job, integrator, account);
         let mut done = 0;
         'pixels: for (i, pixel) in self.pixels_by_neighbourhood() {
@@ -89,14 +90,14 @@ impl Tile {
                 if numbers.is_empty() {
                     continue;
                 }
-                let first = Sampler::of_set(&job.settings.sampling, pixel, half as u32);
+                let first = samplers.of_set(pixel, half as u32);
                 for number in numbers {
                     if done % BATCH as u64 == 0 && (stop.is_cancelled() || stop.is_late()) {
                         break 'pixels;
                     }
                     done += 1;
-                    batch.add(Place { i, half, pixel }, first.at(number));
-                    if batch.places.len() == BATCH {
+                    batch.add(Place { i, half, pixel }, &first.at(number));
+                    if batch.count() == BATCH {
                         self.take(job, &mut batch);
                     }
                 }
@@ -124,23 +125,21 @@ impl Tile {
     /// Takes the samples of `batch`, and empties it.
     fn take(&mut self, job: &Job, batch: &mut Batch) {
         batch.trace();
-        let all = (batch.places.iter().zip(&batch.samples)).zip(&batch.radiances);
-        for (number, ((place, sample), value)) in all.enumerate() {
+        let all = batch.places[..batch.count()].iter().zip(&batch.radiances);
+        for (number, (place, value)) in all.enumerate() {
             let Place { i, half, pixel } = *place;
-            if self.pixels[i].add_sample(half, *value) {
-                if let Some(account) = batch.log.accounts.get(number) {
-                    self.add_layers(job, [i, half], &sample.ray, account);
-                }
-            } else {
+            if !self.pixels[i].add_sample(half, *value) {
                 self.rejected += 1;
-                let index = sample.sampler.index();
-                let sample = RejectedSample { pixel, index };
-                self.first_rejected = self.first_rejected.or(Some(sample));
+                let index = batch.samples.samplers.get(number).map(|s| s.index());
+                let sample = index.map(|index| RejectedSample { pixel, index });
+                self.first_rejected = self.first_rejected.or(sample);
+            } else if let Some(account) = batch.log.accounts.get(number) {
+                let ray = batch.samples.rays.get(number);
+                self.add_layers(job, [i, half], &ray, account);
             }
             self.taken[i][half] += 1;
         }
-        batch.places.clear();
-        batch.samplers.clear();
+        batch.samples.samplers.clear();
     }
 
     /// Adds what `account` tells of a sample along `ray` to the layers, at a pixel's number and half.
@@ -182,15 +181,15 @@ struct Batch<'a> {
     integrator: &'a dyn Integrator,
     rays: CameraRays<'a>,
     /// Where each of them goes.
-    places: Vec<Place>,
-    samplers: Vec<Sampler>,
-    samples: Vec<CameraSample>,
-    radiances: Vec<Rgb>,
+    places: [Place; BATCH],
+    /// Their rays are found when they are traced.
+    samples: CameraRow,
+    radiances: [Rgb; BATCH],
     log: RayLog,
 }
 
 /// Where a sample goes.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Place {
     /// The pixel's place in the vectors of its tile.
     i: usize,
@@ -204,34 +203,48 @@ impl<'a> Batch<'a> {
             job,
             integrator,
             rays: job.camera.rays(job.settings.size),
-            samples: Vec::with_capacity(BATCH),
-            places: Vec::with_capacity(BATCH),
-            samplers: Vec::with_capacity(BATCH),
-            radiances: Vec::with_capacity(BATCH),
+            places: [Place::default(); BATCH],
+            samples: CameraRow::EMPTY,
+            radiances: [Rgb::BLACK; BATCH],
             log: RayLog::told(account.map_or(Vec::new(), |account| vec![account.clone(); BATCH])),
         }
     }
 
-    fn add(&mut self, place: Place, sampler: Sampler) {
-        self.places.push(place);
-        self.samplers.push(sampler);
+    fn count(&self) -> usize {
+        self.samples.samplers.count()
+    }
+
+    fn add(&mut self, place: Place, sampler: &Sampler) {
+        self.places[self.count()] = place;
+        self.samples.samplers.push(sampler);
     }
 
     fn trace(&mut self) {
-        self.samples.clear();
-        let pixels = self.places.iter().map(|place| place.pixel);
-        camera_samples(
-            self.job,
-            &self.rays,
-            pixels,
-            &self.samplers,
-            &mut self.samples,
-        );
-        self.radiances.clear();
-        let told = self.log.accounts.iter_mut().take(self.samples.len());
+        let count = self.count();
+        self.find_rays();
+        let told = self.log.accounts.iter_mut().take(count);
         told.for_each(Account::clear);
         self.integrator
             .radiances(&self.samples, &mut self.radiances, &mut self.log);
+    }
+
+    /// As [`camera_sample`] finds each of them.
+    fn find_rays(&mut self) {
+        let mut film = [Vec2::ZERO; ROW];
+        let mut lens = [Vec2::ZERO; ROW];
+        let CameraRow { rays, samplers } = &mut self.samples;
+        samplers.camera(&mut film);
+        for (film, place) in film.iter_mut().zip(&self.places) {
+            *film = film_position(place.pixel, *film);
+        }
+        if self.job.camera.lens_radius > 0.0 {
+            for (i, place) in lens.iter_mut().enumerate() {
+                *place = samplers
+                    .get(i)
+                    .map_or(Vec2::ZERO, |s| lens_position(self.job, &s));
+            }
+        }
+        *rays = self.rays.row(&film, &lens, samplers.count());
     }
 }
 
@@ -242,32 +255,6 @@ fn add_share(objects: &mut Vec<(u32, [f64; 2])>, instance: u32, half: usize, sha
         objects.len() - 1
     });
     objects[at].1[half] += f64::from(share);
-}
-
-/// [`camera_sample`] of each of `samplers` of `pixels`, added to `samples`.
-fn camera_samples(
-    job: &Job,
-    rays: &CameraRays<'_>,
-    pixels: impl Iterator<Item = UVec2>,
-    samplers: &[Sampler],
-    samples: &mut Vec<CameraSample>,
-) {
-    let mut film = [Vec2::ZERO; ROW];
-    let mut lens = [Vec2::ZERO; ROW];
-    Sampler::camera_row(samplers.iter(), &mut film);
-    for (film, pixel) in film.iter_mut().zip(pixels) {
-        *film = film_position(pixel, *film);
-    }
-    for (place, sampler) in lens.iter_mut().zip(samplers) {
-        *place = lens_position(job, sampler);
-    }
-    let [origins, directions] = rays.row(&film, &lens);
-    for (i, sampler) in samplers.iter().enumerate() {
-        samples.push(CameraSample {
-            ray: Ray::new(origins.get(i), directions.get(i)),
-            sampler: *sampler,
-        });
-    }
 }
 
 /// Sample `index` of `pixel`: its ray from the camera, and its other numbers.

@@ -6,13 +6,16 @@ use crate::math::Vec2;
 ///
 /// The numbers `key.with(0)`, `key.with(1)`, … are the SplitMix64 sequence that starts at `key`
 /// (Steele et al. 2014, "Fast Splittable Pseudorandom Number Generators").
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Key(u64);
 
 impl Key {
+    /// Of no words.
+    pub const ZERO: Self = Self(0);
+
     /// The key of one word.
     pub fn new(word: u64) -> Self {
-        Self(0).with(word)
+        Self::ZERO.with(word)
     }
 
     /// The key of this one's words and one more.

@@ -13,5 +13,6 @@ mod warp;
 
 pub use key::mix;
 pub use pattern::{Pattern, SamplingConfig, Target};
-pub use sampler::Sampler;
+pub use row::SamplerRow;
+pub use sampler::{Sampler, Samplers};
 pub use warp::{square_to_cone, square_to_disk};

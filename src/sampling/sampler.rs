@@ -23,11 +23,11 @@ pub struct Sampler {
     pub(super) pattern: Pattern,
     pub(super) target: Target,
     /// Of all samples of the set; used by patterns that have cells.
-    cells: Cells,
+    pub(super) cells: Cells,
     /// Of seed, pixel and set.
     pub(super) key: Key,
     /// Which of the pixel's sets.
-    set: u32,
+    pub(super) set: u32,
     /// Which sample of its set.
     pub(super) index: u32,
 }
@@ -60,26 +60,48 @@ enum Event {
     Crossing,
 }
 
+/// The samplers of a picture.
+#[derive(Clone, Copy, Debug)]
+pub struct Samplers {
+    pattern: Pattern,
+    target: Target,
+    cells: Cells,
+    seed: Key,
+}
+
+impl Samplers {
+    /// With the samples of `config`.
+    pub fn new(config: &SamplingConfig) -> Self {
+        Self {
+            pattern: config.pattern,
+            target: config.target,
+            cells: Cells::at_least(config.samples.div_ceil(config.pattern.sets())),
+            seed: Key::new(config.seed),
+        }
+    }
+
+    /// The first sample of set `set` ([`Pattern::sets`]) of `pixel`.
+    pub fn of_set(&self, pixel: UVec2, set: u32) -> Sampler {
+        let pixel = u64::from(pixel.y) << 32 | u64::from(pixel.x);
+        Sampler {
+            pattern: self.pattern,
+            target: self.target,
+            cells: self.cells,
+            key: self.seed.with(pixel).with(u64::from(set)),
+            set,
+            index: 0,
+        }
+    }
+}
+
 impl Sampler {
     /// Sample `index` of `config.samples_per_pixel()` of `pixel`. An index past them goes on
     /// with more points of the same pattern.
     pub fn new(config: &SamplingConfig, pixel: UVec2, index: u32) -> Self {
         let sets = config.pattern.sets();
-        Self::of_set(config, pixel, index % sets).at(index / sets)
-    }
-
-    /// The first sample of set `set` ([`Pattern::sets`]) of `pixel`.
-    pub fn of_set(config: &SamplingConfig, pixel: UVec2, set: u32) -> Self {
-        let pixel = u64::from(pixel.y) << 32 | u64::from(pixel.x);
-        let sets = config.pattern.sets();
-        Self {
-            pattern: config.pattern,
-            target: config.target,
-            cells: Cells::at_least(config.samples.div_ceil(sets)),
-            key: Key::new(config.seed).with(pixel).with(u64::from(set)),
-            set,
-            index: 0,
-        }
+        Samplers::new(config)
+            .of_set(pixel, index % sets)
+            .at(index / sets)
     }
 
     /// Sample `number` of its set.
@@ -142,9 +164,14 @@ impl Sampler {
         }
     }
 
-    /// The number of point `j` of the `count` of this sample: up to 2^64 in one pixel, one sample after another.
-    pub(super) fn number(&self, j: u32, count: u32) -> u64 {
-        u64::from(self.index) * u64::from(count) + u64::from(j)
+    fn number(&self, j: u32, count: u32) -> u64 {
+        Self::number_of(self.index, j, count)
+    }
+
+    /// The number of point `j` of the `count` of sample `index`: up to 2^64 in one pixel, one sample after another.
+    #[inline(always)]
+    pub(super) fn number_of(index: u32, j: u32, count: u32) -> u64 {
+        u64::from(index) * u64::from(count) + u64::from(j)
     }
 
     /// How a path goes on from its vertex number `vertex`: in which direction; and by which lobe of the material,

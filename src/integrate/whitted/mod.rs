@@ -3,16 +3,15 @@
 
 mod plain;
 
-use self::plain::Plain;
 use super::visibility::{straight_through, transmittance};
 use super::way::way;
-use super::{CameraSample, Integrator, RayKind, RayLog, RayRecord, Sight, Source, light_samples};
+use super::{CameraRow, Integrator, RayKind, RayLog, RayRecord, Sight, Source, light_samples};
 use crate::bvh::Hit;
 use crate::color::Rgb;
 use crate::interaction::Interaction;
 use crate::light::{Light, LightSample};
 use crate::material::{Bsdf, View, reflect, refract};
-use crate::math::{ROW, Ray, RayRow};
+use crate::math::{ROW, Ray, RayRow, first_places, places};
 use crate::prepare::{PreparedScene, Surface};
 use crate::sampling::Sampler;
 use crate::scene::Settings;
@@ -48,6 +47,17 @@ struct Pending {
 }
 
 impl Pending {
+    /// The ray of a camera sample.
+    fn camera(ray: Ray) -> Self {
+        Self {
+            kind: RayKind::Camera,
+            ray,
+            weight: Rgb::WHITE,
+            depth: 0,
+            vertex: 1,
+        }
+    }
+
     /// What is kept of it where it first meets `hit`.
     fn record(&self, hit: Option<&Hit>) -> RayRecord {
         RayRecord {
@@ -72,7 +82,6 @@ struct MetLight {
 const MOST_WAITING: usize = 4096;
 
 /// What is still to be done for some samples.
-#[derive(Default)]
 struct Work {
     /// The place of the sample that is followed, among those that are taken together.
     sample: usize,
@@ -84,7 +93,7 @@ struct Work {
     shadows: Vec<Shadow>,
     /// What they brought to each sample so far: a sum of its own, so that it does not matter when they are
     /// traced.
-    lit: Vec<Rgb>,
+    lit: [Rgb; ROW],
 }
 
 /// What a shadow ray is for.
@@ -99,6 +108,14 @@ struct Shadow {
 }
 
 impl Work {
+    const NONE: Self = Self {
+        sample: 0,
+        pending: Vec::new(),
+        shadow_rays: Vec::new(),
+        shadows: Vec::new(),
+        lit: [Rgb::BLACK; ROW],
+    };
+
     /// Adds a shadow ray from a vertex of the sample at this place, `depth` scattering events from the camera, and
     /// what the light adds to it.
     fn add_shadow(&mut self, ray: Ray, sample: usize, light: u32, depth: u32, value: Rgb) {
@@ -298,29 +315,25 @@ impl<'a> Whitted<'a> {
         for (rays, shadows) in rows.iter().zip(shadows.chunks(ROW)) {
             let blocked = self.scene.are_blocked(rays);
             for (i, shadow) in shadows.iter().enumerate() {
-                let value = match blocked {
-                    Some(blocked) if blocked >> i & 1 != 0 => Rgb::BLACK,
-                    Some(_) => shadow.value,
-                    None => {
-                        shadow.value * transmittance(self.scene, &rays.get(i), straight_through)
-                    }
-                };
+                let value = self.unblocked(shadow.value, rays, i, blocked);
                 lit[shadow.sample] += value;
                 log.turn_to(shadow.sample);
-                let source = Source::Light(shadow.light);
-                log.light(source, shadow.depth + 1, Rgb::WHITE, value);
-                let kind = RayKind::Shadow(shadow.light);
-                log.add(kind, || RayRecord {
-                    kind,
-                    depth: shadow.depth,
-                    ray: rays.get(i),
-                    t: None,
-                    weight: value,
-                });
+                tell_shadow(log, shadow.light, shadow.depth, value, || rays.get(i));
             }
         }
         shadows.clear();
         rows.clear();
+    }
+
+    /// What comes through of `value` along ray `i`; `blocked` is what the scene says of all of them
+    /// ([`PreparedScene::are_blocked`]).
+    #[inline]
+    fn unblocked(&self, value: Rgb, rays: &RayRow, i: usize, blocked: Option<u64>) -> Rgb {
+        match blocked {
+            Some(blocked) if blocked >> i & 1 != 0 => Rgb::BLACK,
+            Some(_) => value,
+            None => value * transmittance(self.scene, &rays.get(i), straight_through),
+        }
     }
 
     /// Sends rays on from a mirror or from glass; returns the share that goes straight on.
@@ -382,59 +395,53 @@ impl<'a> Whitted<'a> {
 
 impl Integrator for Whitted<'_> {
     fn radiance(&self, ray: &Ray, sampler: &Sampler, log: &mut RayLog) -> Rgb {
-        let sample = CameraSample {
-            ray: *ray,
-            sampler: *sampler,
-        };
-        let mut radiances = Vec::with_capacity(1);
-        self.radiances(&[sample], &mut radiances, log);
-        radiances.pop().unwrap_or(Rgb::BLACK)
+        let mut sample = CameraRow::EMPTY;
+        sample.rays.push(ray);
+        sample.samplers.push(sampler);
+        let mut radiances = [Rgb::BLACK; ROW];
+        self.radiances(&sample, &mut radiances, log);
+        radiances[0]
     }
 
-    fn radiances(&self, samples: &[CameraSample], radiances: &mut Vec<Rgb>, log: &mut RayLog) {
-        let mut work = Work {
-            shadows: Vec::with_capacity(samples.len()),
-            lit: vec![Rgb::BLACK; samples.len()],
-            ..Work::default()
-        };
-        let mut plain = Plain::NONE;
-        let start = radiances.len();
-        let mut hits = None;
-        for (place, CameraSample { ray, sampler }) in samples.iter().enumerate() {
-            let i = place % ROW;
-            if i == 0 {
-                let row = samples[place..].iter().take(ROW).map(|sample| &sample.ray);
-                hits = Some(self.scene.closest_hits(&row.collect()));
-            }
-            let hit = hits.as_ref().and_then(|hits| hits.get(i));
-            if plain.is_full() {
-                self.light_plain(&mut plain, samples, &mut work, log);
-            }
+    fn radiances(&self, samples: &CameraRow, radiances: &mut [Rgb; ROW], log: &mut RayLog) {
+        let hits = self.scene.closest_hits(&samples.rays);
+        let plain = self.see_plain(samples, &hits);
+        self.light_plain(&plain, samples, &hits, radiances, log);
+        let rest = first_places(samples.rays.count()) & !plain.places();
+        if rest == 0 {
+            return;
+        }
+        let mut work = Work::NONE;
+        for place in places(rest) {
+            let Some(sampler) = samples.samplers.get(place) else {
+                continue;
+            };
             work.sample = place;
             log.turn_to(place);
-            let camera = Pending {
-                kind: RayKind::Camera,
-                ray: *ray,
-                weight: Rgb::WHITE,
-                depth: 0,
-                vertex: 1,
-            };
-            let ambient = |hit| self.see_plain(&camera, hit, place, &mut plain, log);
-            if let Some(ambient) = hit.as_ref().and_then(ambient) {
-                radiances.push(ambient);
-                continue;
-            }
-            let mut total = self.follow(&camera, hit, sampler, log, &mut work);
+            let camera = Pending::camera(samples.rays.get(place));
+            let mut total = self.follow(&camera, hits.get(place), &sampler, log, &mut work);
             while let Some(next) = work.pending.pop() {
                 let hit = self.scene.closest_hit(&next.ray, None);
-                total += self.follow(&next, hit, sampler, log, &mut work);
+                total += self.follow(&next, hit, &sampler, log, &mut work);
             }
-            radiances.push(total);
+            radiances[place] = total;
         }
-        self.light_plain(&mut plain, samples, &mut work, log);
         self.light_up(&mut work, log);
-        for (radiance, lit) in radiances[start..].iter_mut().zip(work.lit) {
-            *radiance += lit;
+        for place in places(rest) {
+            radiances[place] += work.lit[place];
         }
     }
+}
+
+/// Tells `log` of a ray to the light of this number and what came of it.
+fn tell_shadow(log: &mut RayLog, light: u32, depth: u32, value: Rgb, ray: impl FnOnce() -> Ray) {
+    log.light(Source::Light(light), depth + 1, Rgb::WHITE, value);
+    let kind = RayKind::Shadow(light);
+    log.add(kind, || RayRecord {
+        kind,
+        depth,
+        ray: ray(),
+        t: None,
+        weight: value,
+    });
 }

@@ -1,81 +1,63 @@
-//! Direct light on plain surfaces that the camera sees, for all samples of a batch at once.
+//! Direct light on plain surfaces that the camera sees, for a row of samples at once.
 //!
 //! It is what [`Whitted::follow`] comes to there, bit for bit, with the arithmetic done in rows.
 
-use super::{Pending, Whitted, Work};
-use crate::bvh::Hit;
+use super::{Pending, Whitted, tell_shadow};
+use crate::bvh::HitRow;
 use crate::color::Rgb;
 use crate::integrate::way::way_in_front;
-use crate::integrate::{CameraSample, RayLog, Sight, Source};
+use crate::integrate::{CameraRow, RayKind, RayLog, Sight, Source};
 use crate::light::{Light, LightSampleRow};
-use crate::material::Bsdf;
-use crate::math::{FEW, ROW, Ray, Row, RowJob, Vec2, VectorRow, widely};
+use crate::math::{
+    FEW, ROW, RayRow, Row, RowJob, Vec2, Vec3, VectorRow, places, those_where, widely,
+};
 use crate::prepare::PlainRow;
-use crate::sampling::Sampler;
-
-/// Camera samples that see plain surfaces.
-pub(super) struct Plain {
-    surfaces: PlainRow,
-    /// Their places among those that are taken together.
-    places: [usize; ROW],
-}
-
-impl Plain {
-    pub const NONE: Self = Self {
-        surfaces: PlainRow::EMPTY,
-        places: [0; ROW],
-    };
-
-    /// Whether there is no room for another one.
-    pub fn is_full(&self) -> bool {
-        self.surfaces.count() == ROW
-    }
-}
 
 /// Shadow rays of a row of points to one light.
 struct WayRow {
-    origin: VectorRow,
-    direction: VectorRow,
-    t_max: Row,
+    rays: RayRow,
     /// Cosine at the surface.
     cos: Row,
+    /// What the light adds where nothing is in the way, if the surface is matte.
+    value: VectorRow,
+    /// Whether light could come that way.
     is_open: [bool; ROW],
 }
 
 impl WayRow {
     const NONE: Self = Self {
-        origin: VectorRow::ZERO,
-        direction: VectorRow::ZERO,
-        t_max: [0.0; ROW],
+        rays: RayRow::EMPTY,
         cos: [0.0; ROW],
+        value: VectorRow::ZERO,
         is_open: [false; ROW],
     };
-
-    #[inline(always)]
-    fn find(&mut self, i: usize, surfaces: &PlainRow, samples: &LightSampleRow) {
-        let at = surfaces.lit_side(i);
-        let sample = samples.get(i);
-        let (way, is_in_front) = way_in_front(&at, sample.wi, sample.shadow);
-        let is_seen = at.shading_normal.dot(*surfaces.wo(i)) > 0.0;
-        self.is_open[i] = samples.is_some(i) & is_seen & is_in_front;
-        self.origin.set(i, way.ray.origin);
-        self.direction.set(i, way.ray.direction);
-        self.t_max[i] = way.ray.t_max;
-        self.cos[i] = way.cos;
-    }
-
-    #[inline(always)]
-    fn ray(&self, i: usize) -> Ray {
-        Ray {
-            t_max: self.t_max[i],
-            ..Ray::new(self.origin.get(i), self.direction.get(i))
-        }
-    }
 }
 
+/// Finds the ways.
 struct Find<'a> {
     surfaces: &'a PlainRow,
     samples: &'a LightSampleRow,
+    /// Shadow rays for each point.
+    count: f32,
+}
+
+impl Find<'_> {
+    #[inline(always)]
+    fn find(&self, i: usize, ways: &mut WayRow) {
+        let at = self.surfaces.lit_side(i);
+        let sample = self.samples.get(i);
+        let (way, is_in_front) = way_in_front(&at, sample.wi, sample.shadow);
+        let is_seen = at.shading_normal.dot(*self.surfaces.wo(i)) > 0.0;
+        let matte = sample.weight * self.surfaces.matte(i) * way.cos;
+        let is_open = self.samples.is_some(i) & is_seen & is_in_front;
+        ways.is_open[i] = is_open & (!matte.is_black() | self.surfaces.is_glossy(i));
+        ways.rays.origins.set(i, way.ray.origin);
+        ways.rays.directions.set(i, way.ray.direction);
+        ways.rays.t_max[i] = way.ray.t_max;
+        ways.cos[i] = way.cos;
+        ways.value
+            .set(i, Vec3::from((matte / self.count).channels()));
+    }
 }
 
 impl RowJob for Find<'_> {
@@ -85,55 +67,40 @@ impl RowJob for Find<'_> {
     fn call(self) -> WayRow {
         let mut ways = WayRow::NONE;
         for i in 0..ROW {
-            ways.find(i, self.surfaces, self.samples);
+            self.find(i, &mut ways);
         }
         ways
     }
 }
 
 impl Whitted<'_> {
-    /// Adds a camera ray whose first `hit` is on a plain surface to `plain`, and returns the ambient light that the
-    /// surface sends back; its direct light is found by [`Self::light_plain`]. `None` where it has to be
-    /// followed.
-    pub(super) fn see_plain(
-        &self,
-        camera: &Pending,
-        hit: &Hit,
-        place: usize,
-        plain: &mut Plain,
-        log: &mut RayLog,
-    ) -> Option<Rgb> {
-        let ray = &camera.ray;
-        if self.max_depth == 0 || self.light_between(ray, 0.0, Some(hit)).is_some() {
-            return None;
-        }
-        let i = plain.surfaces.count();
-        if !self.scene.add_plain(&mut plain.surfaces, ray, hit) {
-            return None;
-        }
-        plain.places[i] = place;
-        log.add(camera.kind, || camera.record(Some(hit)));
-        log.see(Sight::Surface(*hit), 1.0);
-        let albedo = self.scene.plain_bsdf(&plain.surfaces, i).map(Bsdf::diffuse);
-        let ambient = self.scene.background.ambient * albedo.unwrap_or(Rgb::BLACK);
-        log.light(Source::Background, 1, Rgb::WHITE, ambient);
-        Some(ambient)
+    /// Those of `samples` whose first hits are on plain surfaces and before all lights.
+    pub(super) fn see_plain(&self, samples: &CameraRow, hits: &HitRow) -> PlainRow {
+        let rays = &samples.rays;
+        let met = |(_, light): &(u32, &Light)| light.are_met_by(rays, &hits.t);
+        let met = self.visible.iter().map(met).fold(0, |all, met| all | met);
+        let is_lit = self.max_depth > 0;
+        let of = if is_lit { hits.is_hit & !met } else { 0 };
+        self.scene.plain_hits(rays, hits, of, self.smooths_shadows)
     }
 
-    /// Sends the shadow rays from all of `plain` to all lights, and empties it.
+    /// The light that all of `surfaces` send to the camera, into `radiances`.
     pub(super) fn light_plain(
         &self,
-        plain: &mut Plain,
-        samples: &[CameraSample],
-        work: &mut Work,
+        surfaces: &PlainRow,
+        samples: &CameraRow,
+        hits: &HitRow,
+        radiances: &mut [Rgb; ROW],
         log: &mut RayLog,
     ) {
-        let Plain { surfaces, places } = plain;
-        let places = &places[..surfaces.count()];
-        if places.is_empty() {
+        if surfaces.places() == 0 {
             return;
         }
-        surfaces.locate(self.smooths_shadows);
+        for i in places(surfaces.places()) {
+            radiances[i] = self.scene.background.ambient * surfaces.diffuse(i);
+        }
+        self.tell_seen(surfaces, samples, hits, radiances, log);
+        let mut lit = [Rgb::BLACK; ROW];
         let mut row = LightRow {
             u: [Vec2::ZERO; ROW],
             samples: LightSampleRow::NONE,
@@ -143,34 +110,81 @@ impl Whitted<'_> {
             let light = &self.scene.lights[number as usize];
             let count = self.samples[number as usize];
             for j in 0..count {
-                let samplers = places.iter().map(|&place| &samples[place].sampler);
-                Sampler::light_row(samplers, [1, number, j, count], &mut row.u);
-                row.sample(light, surfaces);
-                for (i, &place) in places.iter().enumerate() {
-                    if let Some((ray, value)) = self.direct_plain(surfaces, &row, i) {
-                        let value = value / count as f32;
-                        work.add_shadow(ray, place, number, 0, value);
-                    }
+                let (of, dimension) = (surfaces.places(), [1, number, j, count]);
+                samples.samplers.light(dimension, of, &mut row.u);
+                light.sample_row(surfaces.points(), &row.u, of, &mut row.samples);
+                let open = self.find_ways(surfaces, count, &mut row);
+                let LightRow { ways, .. } = &mut row;
+                ways.rays.keep(open);
+                let blocked = self.scene.are_blocked(&ways.rays);
+                for (ray, i) in places(open).enumerate() {
+                    let value = Rgb::from(ways.value.get(i).to_array());
+                    let value = self.unblocked(value, &ways.rays, ray, blocked);
+                    lit[i] += value;
+                    log.turn_to(i);
+                    tell_shadow(log, number, 0, value, || ways.rays.get(ray));
                 }
-                self.light_up_if_full(work, log);
             }
         }
-        surfaces.clear();
+        for i in places(surfaces.places()) {
+            radiances[i] += lit[i];
+        }
     }
 
-    /// What the sample of a light adds to sample `i` where nothing is in the way of a ray.
-    fn direct_plain(&self, surfaces: &PlainRow, row: &LightRow, i: usize) -> Option<(Ray, Rgb)> {
-        if !row.ways.is_open[i] {
-            return None;
+    /// Finds the shadow rays to the samples of a light; a bit for each place where light could come.
+    fn find_ways(&self, surfaces: &PlainRow, count: u32, row: &mut LightRow) -> u64 {
+        let find = Find {
+            surfaces,
+            samples: &row.samples,
+            count: count as f32,
+        };
+        let (of, ways) = (surfaces.places(), &mut row.ways);
+        if (of.count_ones() as usize) < FEW {
+            places(of).for_each(|i| find.find(i, ways));
+        } else {
+            *ways = widely(find);
         }
-        let sample = row.samples.get(i);
-        let bsdf = self.scene.plain_bsdf(surfaces, i)?;
-        let scattered = bsdf.matte().unwrap_or_else(|| {
+        let mut open = those_where(&ways.is_open) & of;
+        for i in places(open & surfaces.glossy()) {
+            let sample = row.samples.get(i);
             let normal = surfaces.lit_side(i).shading_normal;
-            bsdf.eval(normal, surfaces.wo(i), sample.wi)
-        });
-        let unshadowed = sample.weight * scattered * row.ways.cos[i];
-        (!unshadowed.is_black()).then(|| (row.ways.ray(i), unshadowed))
+            let bsdf = self.scene.plain_bsdf(surfaces, i);
+            let value = bsdf.map_or(Rgb::BLACK, |bsdf| {
+                sample.weight * bsdf.eval(normal, surfaces.wo(i), sample.wi) * ways.cos[i]
+            });
+            if value.is_black() {
+                open &= !(1 << i);
+            }
+            ways.value
+                .set(i, Vec3::from((value / count as f32).channels()));
+        }
+        open
+    }
+
+    /// Tells `log` what the camera sees, and what comes from there without a light: `ambient`.
+    fn tell_seen(
+        &self,
+        surfaces: &PlainRow,
+        samples: &CameraRow,
+        hits: &HitRow,
+        ambient: &[Rgb; ROW],
+        log: &mut RayLog,
+    ) {
+        if !log.is_heard() {
+            log.counts.camera += u64::from(surfaces.places().count_ones());
+            return;
+        }
+        for i in places(surfaces.places()) {
+            let hit = hits.get(i);
+            log.turn_to(i);
+            log.add(RayKind::Camera, || {
+                Pending::camera(samples.rays.get(i)).record(hit.as_ref())
+            });
+            if let Some(hit) = hit {
+                log.see(Sight::Surface(hit), 1.0);
+            }
+            log.light(Source::Background, 1, Rgb::WHITE, ambient[i]);
+        }
     }
 }
 
@@ -179,17 +193,4 @@ struct LightRow {
     u: [Vec2; ROW],
     samples: LightSampleRow,
     ways: WayRow,
-}
-
-impl LightRow {
-    fn sample(&mut self, light: &Light, surfaces: &PlainRow) {
-        let Self { u, samples, ways } = self;
-        let count = surfaces.count();
-        light.sample_row(surfaces.points(), u, count, samples);
-        if count < FEW {
-            (0..count).for_each(|i| ways.find(i, surfaces, samples));
-        } else {
-            *ways = widely(Find { surfaces, samples });
-        }
-    }
 }
