@@ -17,18 +17,15 @@ use crate::math::{
 #[derive(Debug)]
 pub struct PlainMaterial {
     /// How it scatters light.
-    pub bsdf: Bsdf,
-    /// [`Bsdf::diffuse`].
-    diffuse: Rgb,
+    bsdf: Bsdf,
     /// [`Bsdf::matte`].
     matte: Option<Rgb>,
 }
 
 impl PlainMaterial {
     /// `material`, if it is plain.
-    pub(super) fn of(material: &Material) -> Option<Self> {
+    pub fn of(material: &Material) -> Option<Self> {
         material.plain().map(|bsdf| Self {
-            diffuse: bsdf.diffuse(),
             matte: bsdf.matte(),
             bsdf,
         })
@@ -43,6 +40,10 @@ pub struct PlainRow {
     places: u64,
     faces: FaceRow,
     seen: SeenRow,
+    /// [`Bsdf::matte`].
+    matte: VectorRow,
+    /// A bit for each that is not matte.
+    glossy: u64,
 }
 
 /// The triangles that were hit, and their materials.
@@ -55,37 +56,31 @@ struct FaceRow {
     normals: [VectorRow; 3],
     has_normals: [bool; ROW],
     is_smooth: bool,
-    /// [`Bsdf::diffuse`].
-    diffuse: VectorRow,
-    /// [`Bsdf::matte`].
-    matte: VectorRow,
-    /// A bit for each that is not matte.
-    glossy: u64,
 }
 
 impl FaceRow {
     const NONE: Self = Self {
         materials: [0; ROW],
         corners: [VectorRow::ZERO; 3],
-        orientation: [1.0; ROW],
+        orientation: [0.0; ROW],
         normals: [VectorRow::ZERO; 3],
         has_normals: [false; ROW],
         is_smooth: false,
-        diffuse: VectorRow::ZERO,
-        matte: VectorRow::ZERO,
-        glossy: 0,
     };
 
     /// Makes the face at place `to` the one at place `from`.
+    #[inline]
     fn copy(&mut self, from: usize, to: usize) {
         self.materials[to] = self.materials[from];
         self.orientation[to] = self.orientation[from];
-        self.has_normals[to] = self.has_normals[from];
-        self.glossy |= (self.glossy >> from & 1) << to;
-        let rows = [&mut self.diffuse, &mut self.matte];
-        let normals = self.normals.iter_mut().filter(|_| self.is_smooth);
-        for row in self.corners.iter_mut().chain(normals).chain(rows) {
+        for row in &mut self.corners {
             row.set(to, row.get(from));
+        }
+        if self.is_smooth {
+            self.has_normals[to] = self.has_normals[from];
+            for row in &mut self.normals {
+                row.set(to, row.get(from));
+            }
         }
     }
 }
@@ -106,9 +101,9 @@ impl SeenRow {
         point: VectorRow::ZERO,
         shadow_origin: VectorRow::ZERO,
         is_bulging: [false; ROW],
-        geometric_normal: VectorRow::Z,
-        shading_normal: VectorRow::Z,
-        wo: VectorRow::Z,
+        geometric_normal: VectorRow::ZERO,
+        shading_normal: VectorRow::ZERO,
+        wo: VectorRow::ZERO,
     };
 
     #[inline(always)]
@@ -123,6 +118,15 @@ impl SeenRow {
 }
 
 impl PlainRow {
+    /// No hits.
+    pub const NONE: Self = Self {
+        places: 0,
+        faces: FaceRow::NONE,
+        seen: SeenRow::NOWHERE,
+        matte: VectorRow::ZERO,
+        glossy: 0,
+    };
+
     /// A bit for each ray whose hit is on a plain surface.
     pub fn places(&self) -> u64 {
         self.places
@@ -152,26 +156,21 @@ impl PlainRow {
         UnitVec3::from_normalized(self.seen.wo.get(i))
     }
 
-    /// [`Bsdf::diffuse`] of the surface at hit `i`.
-    pub fn diffuse(&self, i: usize) -> Rgb {
-        Rgb::from(self.faces.diffuse.get(i).to_array())
-    }
-
     /// [`Bsdf::matte`] of the surface at hit `i`; means nothing where it is glossy.
     #[inline(always)]
     pub fn matte(&self, i: usize) -> Rgb {
-        Rgb::from(self.faces.matte.get(i).to_array())
+        Rgb::from(self.matte.get(i).to_array())
     }
 
     /// Whether the surface at hit `i` is not matte.
     #[inline(always)]
     pub fn is_glossy(&self, i: usize) -> bool {
-        self.faces.glossy >> i & 1 != 0
+        self.glossy >> i & 1 != 0
     }
 
     /// A bit for each hit on a surface that is not matte.
     pub fn glossy(&self) -> u64 {
-        self.faces.glossy
+        self.glossy
     }
 }
 
@@ -239,14 +238,16 @@ impl RowJob for Locate<'_> {
 }
 
 impl PreparedScene<'_> {
-    /// Those `hits` of `rays` with a bit in `of` that are on plain surfaces; with `is_bulging` shadows start
-    /// on the surface that vertex normals describe.
-    pub fn plain_hits(&self, rays: &RayRow, hits: &HitRow, of: u64, is_bulging: bool) -> PlainRow {
-        let mut row = PlainRow {
-            places: 0,
-            faces: FaceRow::NONE,
-            seen: SeenRow::NOWHERE,
-        };
+    /// Adds those `hits` of `rays` with a bit in `of` that are on plain surfaces to `row`, which has none; with
+    /// `is_bulging` shadows start on the surface that vertex normals describe.
+    pub fn see_plain(
+        &self,
+        rays: &RayRow,
+        hits: &HitRow,
+        of: u64,
+        is_bulging: bool,
+        row: &mut PlainRow,
+    ) {
         let mut last: Option<usize> = None;
         for i in places(of) {
             let is_same = |&last: &usize| {
@@ -264,7 +265,8 @@ impl PreparedScene<'_> {
             places: of,
             faces,
             seen,
-        } = &mut row;
+            ..
+        } = row;
         let job = Locate {
             faces,
             rays,
@@ -276,7 +278,26 @@ impl PreparedScene<'_> {
         } else {
             *seen = widely(job);
         }
-        row
+        self.read_matte(row);
+    }
+
+    /// Reads what [`PlainRow::matte`] and [`PlainRow::glossy`] say.
+    fn read_matte(&self, row: &mut PlainRow) {
+        let mut last = None;
+        for i in places(row.places) {
+            let material = row.faces.materials[i];
+            let matte = match last {
+                Some((known, matte)) if known == material => matte,
+                _ => self.plain[material as usize]
+                    .as_ref()
+                    .and_then(|plain| plain.matte),
+            };
+            last = Some((material, matte));
+            match matte {
+                Some(matte) => row.matte.set(i, Vec3::from(matte.channels())),
+                None => row.glossy |= 1 << i,
+            }
+        }
     }
 
     /// Puts what hit `i` is on into `faces`, if it is plain; whether it is.
@@ -290,10 +311,7 @@ impl PreparedScene<'_> {
         let of_scene = &self.scene.instances[instance as usize];
         let mesh = self.scene.mesh(of_scene.mesh);
         let material = of_scene.material.0;
-        let Some(plain) = &self.plain[material as usize] else {
-            return false;
-        };
-        if !mesh.colors().is_empty() {
+        if self.plain[material as usize].is_none() || !mesh.colors().is_empty() {
             return false;
         }
         let tree = &self.geometry.trees[traced.tree as usize];
@@ -303,11 +321,6 @@ impl PreparedScene<'_> {
         }
         faces.orientation[i] = self.orientation[instance as usize];
         faces.materials[i] = material;
-        faces.diffuse.set(i, Vec3::from(plain.diffuse.channels()));
-        match plain.matte {
-            Some(matte) => faces.matte.set(i, Vec3::from(matte.channels())),
-            None => faces.glossy |= 1 << i,
-        }
         let normals = self.normals_of(instance, mesh, || mesh.indices()[number as usize]);
         faces.has_normals[i] = normals.is_some();
         if let Some(normals) = normals {

@@ -12,7 +12,7 @@ use crate::interaction::Interaction;
 use crate::light::{Light, LightSample};
 use crate::material::{Bsdf, View, reflect, refract};
 use crate::math::{ROW, Ray, RayRow, first_places, places};
-use crate::prepare::{PreparedScene, Surface};
+use crate::prepare::{PlainRow, PreparedScene, Surface};
 use crate::sampling::Sampler;
 use crate::scene::Settings;
 
@@ -405,7 +405,8 @@ impl Integrator for Whitted<'_> {
 
     fn radiances(&self, samples: &CameraRow, radiances: &mut [Rgb; ROW], log: &mut RayLog) {
         let hits = self.scene.closest_hits(&samples.rays);
-        let plain = self.see_plain(samples, &hits);
+        let mut plain = PlainRow::NONE;
+        self.see_plain(samples, &hits, &mut plain);
         self.light_plain(&plain, samples, &hits, radiances, log);
         let rest = first_places(samples.rays.count()) & !plain.places();
         if rest == 0 {

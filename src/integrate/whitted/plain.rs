@@ -74,14 +74,15 @@ impl RowJob for Find<'_> {
 }
 
 impl Whitted<'_> {
-    /// Those of `samples` whose first hits are on plain surfaces and before all lights.
-    pub(super) fn see_plain(&self, samples: &CameraRow, hits: &HitRow) -> PlainRow {
+    /// Adds those of `samples` whose first hits are on plain surfaces and before all lights to `surfaces`, which has none.
+    pub(super) fn see_plain(&self, samples: &CameraRow, hits: &HitRow, surfaces: &mut PlainRow) {
         let rays = &samples.rays;
         let met = |(_, light): &(u32, &Light)| light.are_met_by(rays, &hits.t);
         let met = self.visible.iter().map(met).fold(0, |all, met| all | met);
         let is_lit = self.max_depth > 0;
         let of = if is_lit { hits.is_hit & !met } else { 0 };
-        self.scene.plain_hits(rays, hits, of, self.smooths_shadows)
+        let is_bulging = self.smooths_shadows;
+        self.scene.see_plain(rays, hits, of, is_bulging, surfaces);
     }
 
     /// The light that all of `surfaces` send to the camera, into `radiances`.
@@ -96,8 +97,12 @@ impl Whitted<'_> {
         if surfaces.places() == 0 {
             return;
         }
+        let ambient = self.scene.background.ambient;
         for i in places(surfaces.places()) {
-            radiances[i] = self.scene.background.ambient * surfaces.diffuse(i);
+            radiances[i] = match self.scene.plain_bsdf(surfaces, i) {
+                Some(bsdf) if !ambient.is_black() => ambient * bsdf.diffuse(),
+                _ => Rgb::BLACK,
+            };
         }
         self.tell_seen(surfaces, samples, hits, radiances, log);
         let mut lit = [Rgb::BLACK; ROW];
