@@ -12,21 +12,32 @@ pub struct Moments {
 }
 
 impl Moments {
-    /// Adds a sample; `false` where it is not finite, and all stays as it was.
+    /// Adds samples but for those that are not finite; whether all were.
     #[inline]
-    fn add_sample(&mut self, value: Rgb) -> bool {
-        if !value.is_finite() {
-            return false;
+    fn add_samples(&mut self, values: &[Rgb]) -> bool {
+        let before = self.count;
+        // Not in memory, from sample to sample.
+        let Self {
+            mut mean,
+            mut deviation,
+            mut count,
+        } = *self;
+        for value in values.iter().filter(|value| value.is_finite()) {
+            count += 1;
+            let share = 1.0 / count as f64;
+            for (i, c) in value.channels().into_iter().enumerate() {
+                // Welford 1962, "Note on a Method for Calculating Corrected Sums of Squares".
+                let off = f64::from(c) - mean[i];
+                mean[i] += off * share;
+                deviation[i] += off * (f64::from(c) - mean[i]);
+            }
         }
-        self.count += 1;
-        let share = 1.0 / self.count as f64;
-        for (i, c) in value.channels().into_iter().enumerate() {
-            // Welford 1962, "Note on a Method for Calculating Corrected Sums of Squares".
-            let off = f64::from(c) - self.mean[i];
-            self.mean[i] += off * share;
-            self.deviation[i] += off * (f64::from(c) - self.mean[i]);
-        }
-        true
+        *self = Self {
+            mean,
+            deviation,
+            count,
+        };
+        count - before == values.len() as u64
     }
 
     /// Their mean by channel; 0 where there are none.
@@ -65,7 +76,13 @@ impl Pixel {
     /// Adds a sample to a half, 0 or 1; `false` where it is not finite, and the pixel stays as it was.
     #[inline]
     pub fn add_sample(&mut self, half: usize, value: Rgb) -> bool {
-        self.halves[half].add_sample(value)
+        self.add_samples(half, &[value])
+    }
+
+    /// Adds samples to a half, 0 or 1, but for those that are not finite; whether all were.
+    #[inline]
+    pub fn add_samples(&mut self, half: usize, values: &[Rgb]) -> bool {
+        self.halves[half].add_samples(values)
     }
 
     /// The two halves.

@@ -80,6 +80,7 @@ impl Tile {
         }
         let samplers = Samplers::new(&job.settings.sampling);
         let mut batch = Batch::new(job, integrator, account);
+        let is_stopped = || stop.is_cancelled() || stop.is_late();
         let mut done = 0;
         'pixels: for (i, pixel) in self.pixels_by_neighbourhood() {
             if self.taken[i] == self.goal[i] {
@@ -92,7 +93,7 @@ impl Tile {
                 }
                 let first = samplers.of_set(pixel, half as u32);
                 for number in numbers {
-                    if done % BATCH as u64 == 0 && (stop.is_cancelled() || stop.is_late()) {
+                    if batch.count() == 0 && is_stopped() {
                         break 'pixels;
                     }
                     done += 1;
@@ -125,19 +126,28 @@ impl Tile {
     /// Takes the samples of `batch`, and empties it.
     fn take(&mut self, job: &Job, batch: &mut Batch) {
         batch.trace();
-        let all = batch.places[..batch.count()].iter().zip(&batch.radiances);
-        for (number, (place, value)) in all.enumerate() {
-            let Place { i, half, pixel } = *place;
-            if !self.pixels[i].add_sample(half, *value) {
-                self.rejected += 1;
-                let index = batch.samples.samplers.get(number).map(|s| s.index());
-                let sample = index.map(|index| RejectedSample { pixel, index });
-                self.first_rejected = self.first_rejected.or(sample);
-            } else if let Some(account) = batch.log.accounts.get(number) {
-                let ray = batch.samples.rays.get(number);
-                self.add_layers(job, [i, half], &ray, account);
+        let count = batch.count();
+        let mut end = 0;
+        for run in batch.places[..count].chunk_by(Place::is_same_half) {
+            let Place { i, half, pixel } = run[0];
+            let numbers = end..end + run.len();
+            end = numbers.end;
+            self.taken[i][half] += run.len() as u32;
+            let are_added = self.pixels[i].add_samples(half, &batch.radiances[numbers.clone()]);
+            if are_added && batch.log.accounts.is_empty() {
+                continue;
             }
-            self.taken[i][half] += 1;
+            for number in numbers {
+                if !batch.radiances[number].is_finite() {
+                    self.rejected += 1;
+                    let index = batch.samples.samplers.get(number).map(|s| s.index());
+                    let sample = index.map(|index| RejectedSample { pixel, index });
+                    self.first_rejected = self.first_rejected.or(sample);
+                } else if let Some(account) = batch.log.accounts.get(number) {
+                    let ray = batch.samples.rays.get(number);
+                    self.add_layers(job, [i, half], &ray, account);
+                }
+            }
         }
         batch.samples.samplers.clear();
     }
@@ -195,6 +205,12 @@ struct Place {
     i: usize,
     half: usize,
     pixel: UVec2,
+}
+
+impl Place {
+    fn is_same_half(&self, other: &Self) -> bool {
+        self.i == other.i && self.half == other.half
+    }
 }
 
 impl<'a> Batch<'a> {

@@ -122,9 +122,17 @@ impl Whitted<'_> {
                 let LightRow { ways, .. } = &mut row;
                 ways.rays.keep(open);
                 let blocked = self.scene.are_blocked(&ways.rays);
+                let value = |i: usize| Rgb::from(ways.value.get(i).to_array());
+                if let (Some(blocked), false) = (blocked, log.is_heard()) {
+                    log.counts.shadow += u64::from(open.count_ones());
+                    let is_lit = |ray: &usize| blocked >> ray & 1 == 0;
+                    for (_, i) in places(open).enumerate().filter(|(ray, _)| is_lit(ray)) {
+                        lit[i] += value(i);
+                    }
+                    continue;
+                }
                 for (ray, i) in places(open).enumerate() {
-                    let value = Rgb::from(ways.value.get(i).to_array());
-                    let value = self.unblocked(value, &ways.rays, ray, blocked);
+                    let value = self.unblocked(value(i), &ways.rays, ray, blocked);
                     lit[i] += value;
                     log.turn_to(i);
                     tell_shadow(log, number, 0, value, || ways.rays.get(ray));
