@@ -19,11 +19,7 @@ use thiserror::Error;
 use super::Picture;
 use crate::color::{Rgb, srgb_to_linear, srgb8_to_linear};
 use crate::math::UVec2;
-use crate::scene::MAX_PIXELS;
-
-/// The most pixels that a byte of a file can stand for: eight of one bit each, in the longest runs of deflate,
-/// 1,032 bytes to one. Nothing that is read here packs more.
-const MOST_PIXELS_PER_BYTE: u64 = 8 * 1032;
+use crate::scene::{MAX_PIXELS, most_pixels};
 
 /// A picture from a file.
 #[derive(Clone, Debug)]
@@ -225,7 +221,7 @@ fn check_size(width: u64, height: u64, bytes: u64) -> Result<(), ReadProblem> {
     if pixels > MAX_PIXELS {
         return Err(ReadProblem::TooLarge { width, height });
     }
-    if pixels > bytes.saturating_mul(MOST_PIXELS_PER_BYTE) {
+    if pixels > most_pixels(bytes) {
         return Err(ReadProblem::TooShort {
             width,
             height,

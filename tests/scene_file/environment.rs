@@ -126,6 +126,8 @@ fn files_that_are_no_pictures_are_named() {
     let files = skies();
     files.write("text.exr", "not a picture");
     files.write("cut.hdr", &hdr()[..40]);
+    let many_pixels = include_bytes!("../../fuzz/seeds/exr/many-pixels");
+    files.write("many.exr", many_pixels);
     let whole = std::fs::read(files.write("again.exr", "")).unwrap();
     assert!(whole.is_empty());
     for (name, word) in [
@@ -133,6 +135,7 @@ fn files_that_are_no_pictures_are_named() {
         ("text.exr", "surroundings"),
         ("cut.hdr", "surroundings"),
         ("again.exr", "surroundings"),
+        ("many.exr", "do not fit into its 541 bytes"),
     ] {
         let text = format!("background.environment = \"{name}\"\n");
         let error = files.scene(&text, &SceneOptions::default()).unwrap_err();
