@@ -1,5 +1,7 @@
 //! A square of the film: its pixels take samples until each half has as many as it aims at.
 
+use rayon::prelude::*;
+
 use super::Job;
 use super::stop::Stop;
 use crate::camera::{CameraRays, film_position};
@@ -298,18 +300,20 @@ fn lens_position(job: &Job, sampler: &Sampler) -> Vec2 {
 pub(super) fn tiles(job: &Job) -> Vec<Tile> {
     let crop = job.crop;
     let steps = |start: u32, length: u32| (start..start + length).step_by(TILE as usize);
-    steps(crop.y, crop.height)
+    let places: Vec<_> = steps(crop.y, crop.height)
         .flat_map(|y| steps(crop.x, crop.width).map(move |x| (x, y)))
-        .map(|(x, y)| {
-            let rect = Rect {
-                x,
-                y,
-                width: TILE.min(crop.x + crop.width - x),
-                height: TILE.min(crop.y + crop.height - y),
-            };
-            Tile::new(rect, &job.layers)
-        })
-        .collect()
+        .collect();
+    let tile = |(x, y)| {
+        let rect = Rect {
+            x,
+            y,
+            width: TILE.min(crop.x + crop.width - x),
+            height: TILE.min(crop.y + crop.height - y),
+        };
+        Tile::new(rect, &job.layers)
+    };
+    // Most of it is the system's work for memory that is new.
+    places.into_par_iter().map(tile).collect()
 }
 
 /// The error of all tiles, summed in their order; `None` where one does not tell.
@@ -325,9 +329,15 @@ pub(super) fn error_of(tiles: &[Tile]) -> Option<ErrorSums> {
 pub(super) fn assemble(job: &Job, tiles: &[Tile], stopped_by: StoppedBy) -> Film {
     let crop = job.crop;
     let area = crop.area() as usize;
+    let columns = crop.width.div_ceil(TILE);
+    let pixel = |i: u32| {
+        let (x, y) = (i % crop.width, i / crop.width);
+        let tile = &tiles[(y / TILE * columns + x / TILE) as usize];
+        tile.pixels[(y % TILE * tile.rect.width + x % TILE) as usize]
+    };
     let mut film = Film {
         rect: crop,
-        pixels: vec![Pixel::default(); area],
+        pixels: (0..area as u32).into_par_iter().map(pixel).collect(),
         layers: vec![vec![[0.0; 3]; area]; job.layers.len()],
         objects: match job.layers.contains(&Aov::Objects) {
             true => vec![Vec::new(); area],
@@ -342,10 +352,6 @@ pub(super) fn assemble(job: &Job, tiles: &[Tile], stopped_by: StoppedBy) -> Film
     for tile in tiles {
         let place = |x: u32, y: u32| ((y - crop.y) * crop.width + x - crop.x) as usize;
         let rect = tile.rect;
-        let rows = tile.pixels.chunks_exact(rect.width.max(1) as usize);
-        for (row, y) in rows.zip(rect.y..) {
-            film.pixels[place(rect.x, y)..][..row.len()].copy_from_slice(row);
-        }
         let has_more = !(film.layers.is_empty() && tile.objects.is_empty());
         for (i, at) in rect.pixels().enumerate().filter(|_| has_more) {
             let to = place(at.x, at.y);
