@@ -11,15 +11,16 @@ mod shadow;
 mod walk;
 mod weighing;
 
+use crate::bvh::Hit;
 use crate::color::Rgb;
 use crate::light::{Light, Receiver};
 use crate::material::BsdfSample;
-use crate::math::Ray;
+use crate::math::{ROW, Ray};
 use crate::prepare::{PreparedScene, Surface};
 use crate::sampling::Sampler;
 use crate::scene::Settings;
 
-use super::{Integrator, RayKind, RayLog, light_samples};
+use super::{CameraRow, Integrator, RayKind, RayLog, light_samples};
 use lights::{Lights, Place};
 use shadow::is_pane;
 use walk::{Departure, Walk, beyond};
@@ -147,6 +148,21 @@ fn kind_of(sample: &BsdfSample) -> RayKind {
 
 impl Integrator for PathTracer<'_> {
     fn radiance(&self, ray: &Ray, sampler: &Sampler, log: &mut RayLog) -> Rgb {
+        self.follow(ray, self.scene.closest_hit(ray, None), sampler, log)
+    }
+
+    fn radiances(&self, samples: &CameraRow, radiances: &mut [Rgb; ROW], log: &mut RayLog) {
+        let hits = self.scene.closest_hits(&samples.rays);
+        for (i, (ray, sampler)) in samples.iter().enumerate() {
+            log.turn_to(i);
+            radiances[i] = self.follow(&ray, hits.get(i), &sampler, log);
+        }
+    }
+}
+
+impl PathTracer<'_> {
+    /// The radiance along a ray from the camera whose nearest hit is `first`.
+    fn follow(&self, ray: &Ray, first: Option<Hit>, sampler: &Sampler, log: &mut RayLog) -> Rgb {
         let mut total = Rgb::BLACK;
         let mut walk = Walk {
             ray: *ray,
@@ -159,6 +175,7 @@ impl Integrator for PathTracer<'_> {
             absorption: None,
             is_clear: true,
             passed: None,
+            found: Some(first),
         };
         while let Some(surface) = self.advance(&mut walk, sampler, log, &mut total) {
             if walk.scattered >= self.max_depth {

@@ -31,6 +31,8 @@ pub(super) struct Walk {
     pub is_clear: bool,
     /// How far along the ray it has come.
     pub passed: Option<Hit>,
+    /// What the ray meets first, where that has been found already.
+    pub found: Option<Option<Hit>>,
 }
 
 /// A scattering by which a light may have been found in place of being looked at.
@@ -52,7 +54,8 @@ impl<'a> PathTracer<'a> {
         total: &mut Rgb,
     ) -> Option<Surface<'a>> {
         loop {
-            let hit = self.scene.closest_hit(&walk.ray, walk.passed.as_ref());
+            let find = || self.scene.closest_hit(&walk.ray, walk.passed.as_ref());
+            let hit = walk.found.take().unwrap_or_else(find);
             if walk.passed.is_none() {
                 log.add(walk.kind, || RayRecord {
                     kind: walk.kind,
