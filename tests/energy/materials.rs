@@ -171,6 +171,23 @@ pub fn cases() -> Vec<Case> {
         case("Phong 20", glossy(20.0)),
         narrow("Phong 1e6", glossy(1e6)),
         case("mirror and glass over matte", mirror),
+        case(
+            "colours beyond 1",
+            phong(|p| {
+                p.diffuse = rgb(0.8, 0.8, 0.2);
+                p.specular = rgb(0.5, 0.5, 0.5);
+                p.exponent = scalar(10.0);
+            }),
+        ),
+        case(
+            "glass with a highlight",
+            phong(|p| {
+                p.specular = rgb(0.04, 0.04, 0.04);
+                p.exponent = scalar(40.0);
+                p.transmit = Rgb::WHITE;
+                p.index_of_refraction = 1.5;
+            }),
+        ),
         narrow("mirror of metal", metal(0.0)),
         narrow("smooth metal", metal(0.05)),
         case("metal 0.3", metal(0.3)),
