@@ -3,8 +3,8 @@
 //! The light is counted that meets one facet. What is reflected or refracted into other facets is lost; it would
 //! leave in the end, to either side.
 //!
-//! A table is computed for each index that is asked for, and for the two next to it where it lies between: some
-//! milliseconds each. Between entries values are interpolated linearly; tests hold them against a finer integral.
+//! A table is computed for each index that is asked for, and for the two next to it where it lies between: some twenty
+//! milliseconds. Between entries values are interpolated linearly; tests hold them against a finer integral.
 
 use std::sync::OnceLock;
 
