@@ -91,7 +91,8 @@ pub struct ConvergeOptions {
     /// Which of the scene's cameras [default: the scene's choice, or the first]
     #[arg(long, value_name = "NAME")]
     camera: Option<String>,
-    /// Scattering events of a path; 1 is direct light only [default: the scene's, or 8]
+    /// Scattering events of a path; 1 is direct light only [default: the scene's, or 64
+    /// in path and 8 in whitted]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_DEPTH)))]
     max_depth: Option<u32>,
     /// Seed of the reference; those of the methods come after it [default: the scene's, or 0]
@@ -229,7 +230,7 @@ fn load(options: &ConvergeOptions) -> Result<Imported, Failure> {
         .map_err(|error| Failure::of_import(COMMAND, &error))?;
     options.console.warn_all(&imported.warnings);
     let settings = &mut imported.settings;
-    settings.max_depth = options.max_depth.unwrap_or(settings.max_depth);
+    settings.max_depth = options.max_depth.or(settings.max_depth);
     if options.size.is_none() {
         settings.size = modest(settings.size);
     }
@@ -310,7 +311,7 @@ fn told_settings(
         ("repeats".to_owned(), plan.repeats.to_string()),
         ("seconds".to_owned(), plan.seconds.to_string()),
         ("seed".to_owned(), plan.seed.to_string()),
-        ("max_depth".to_owned(), settings.max_depth.to_string()),
+        ("max_depth".to_owned(), settings.depth().to_string()),
         ("bvh".to_owned(), options.bvh.name().to_owned()),
     ];
     let set = options.scene.reading.set.iter();

@@ -24,7 +24,7 @@ pub fn metadata(
             format!("{},{},{},{}", crop.x, crop.y, crop.width, crop.height),
         ),
         ("integrator", settings.integrator.name().to_owned()),
-        ("max_depth", settings.max_depth.to_string()),
+        ("max_depth", settings.depth().to_string()),
         ("samples", samples(film)),
         ("pattern", sampling.pattern.name().to_owned()),
         ("target", sampling.target.name().to_owned()),

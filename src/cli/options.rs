@@ -148,7 +148,8 @@ pub struct PictureOptions {
     /// What is computed [default: the scene's, or path for a glTF file by itself, or whitted]
     #[arg(long, value_name = "KIND", value_parser = one_of(IntegratorKind::ALL, IntegratorKind::name))]
     pub integrator: Option<IntegratorKind>,
-    /// Scattering events of a path; 1 is direct light only [default: the scene's, or 8]
+    /// Scattering events of a path; 1 is direct light only [default: the scene's, or 64
+    /// in path and 8 in whitted]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_DEPTH)))]
     pub max_depth: Option<u32>,
     /// Dim light that was scattered more than once to this radiance (path); what that takes away is said
@@ -345,7 +346,7 @@ impl RenderOptions {
             }
         }
         put(self.picture.integrator, &mut settings.integrator);
-        put(self.picture.max_depth, &mut settings.max_depth);
+        settings.max_depth = self.picture.max_depth.or(settings.max_depth);
         settings.clamp = (self.picture.clamp.map(|c| c as f32)).or(settings.clamp);
         put(self.sampling.samples, &mut settings.sampling.samples);
         put(self.sampling.pattern, &mut settings.sampling.pattern);

@@ -167,7 +167,25 @@ impl Bsdf {
 
     /// Value for light that comes from `wi`, on either side, 1/sr: all lobes that have area.
     pub fn value(&self, view: &View, wi: UnitVec3) -> Rgb {
-        self.lobes.value(&view.pair(wi), false)
+        self.kept(self.lobes.value(&view.pair(wi), false))
+    }
+
+    /// What is left of `light` that was scattered. Colours of MTL files often add up to more than
+    /// 1; they are dimmed per channel until nothing is made, which paths would meet again and again.
+    pub(super) fn kept(&self, light: Rgb) -> Rgb {
+        let Lobes::Phong {
+            diffuse,
+            reflectance,
+            ..
+        } = &self.lobes
+        else {
+            return light;
+        };
+        let all = *diffuse + *reflectance + self.specular.reflect + self.specular.transmit;
+        match all.max_channel() > 1.0 {
+            true => light * all.map(|sum| 1.0 / sum.max(1.0)),
+            false => light,
+        }
     }
 
     /// Reflectance of its matte base.
@@ -216,7 +234,7 @@ impl Bsdf {
             Lobes::Layered(layers) => layers.straight(&pair),
             Lobes::Phong { .. } => {
                 let eta = self.specular.relative_index(view.is_inside);
-                self.specular.glass(pair.wo.z, eta).1
+                self.kept(self.specular.glass(pair.wo.z, eta).1)
             }
         }
     }

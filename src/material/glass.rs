@@ -3,6 +3,9 @@
 //! What is carried along a ray is basic radiance, L/n², which a border changes by what it
 //! reflects alone.
 
+use std::f32::consts::PI;
+
+use super::border::Border;
 use super::fresnel::{fresnel_dielectric, reflect, refract};
 use super::iridescence::Film;
 use super::microfacet::Ggx;
@@ -139,6 +142,72 @@ impl Glass {
         }
         let [r, g, b] = etas.map(channel);
         self.tint * Rgb::new(r.r, g.g, b.b)
+    }
+
+    /// A rough border of a body from the viewer's side and from the other, per channel.
+    fn borders(&self, ggx: &Ggx, is_inside: bool) -> [(Border, Border); 3] {
+        let [r, g, b] = self.etas(is_inside);
+        let side = |eta: f32, f0: f32| {
+            // A film may reflect less, and then less is lost.
+            let has_film = self.film.is_some() && eta >= 1.0;
+            Border {
+                alpha: ggx.alpha,
+                eta,
+                f0: if has_film { 0.0 } else { f0 },
+                f90: self.f90,
+            }
+        };
+        [(r, self.f0.r), (g, self.f0.g), (b, self.f0.b)]
+            .map(|(eta, f0)| (side(eta, f0), side(1.0 / eta, f0)))
+    }
+
+    /// Value for light that crossed several facets of a rough border of a body.
+    ///
+    /// It leaves to both sides in proportion to what each misses, which adds up to what is lost
+    /// and is the same both ways: the lobe of Kulla and Conty (2017, "Revisiting Physically Based
+    /// Shading at Imageworks") for both hemispheres at once, each by the square of its index.
+    pub fn between_facets(&self, ggx: &Ggx, wo: Vec3, wi: Vec3, is_inside: bool) -> Rgb {
+        if !self.is_lossy() {
+            return Rgb::BLACK;
+        }
+        let channel = |(near, far): &(Border, Border)| {
+            let squared = near.eta * near.eta;
+            let all = PI * (near.mean_lost() + squared * far.mean_lost());
+            let met = if wi.z > 0.0 {
+                near.lost(wi.z)
+            } else {
+                squared * far.lost(-wi.z)
+            };
+            near.lost(wo.z) * met / all
+        };
+        let value = self.per_channel(&self.borders(ggx, is_inside), channel);
+        if wi.z > 0.0 { value } else { value * self.tint }
+    }
+
+    /// What [`Glass::between_facets`] sends to a viewer from both sides: from the viewer's, and from the other.
+    pub fn lost(&self, ggx: &Ggx, cos: f32, is_inside: bool) -> (f32, f32) {
+        if !self.is_lossy() {
+            return (0.0, 0.0);
+        }
+        let [_, (near, far), _] = self.borders(ggx, is_inside);
+        let (here, there) = (near.mean_lost(), near.eta * near.eta * far.mean_lost());
+        let lost = near.lost(cos) / (here + there);
+        (lost * here, lost * there * self.tint.max_channel())
+    }
+
+    /// Whether it is the border of a body that mirrors not everything.
+    fn is_lossy(&self) -> bool {
+        !self.is_thin && self.index > 0.0 && self.index.is_finite()
+    }
+
+    /// The same value thrice where the channels do not differ.
+    fn per_channel<T>(&self, parts: &[T; 3], value: impl Fn(&T) -> f32) -> Rgb {
+        let [r, g, b] = parts;
+        let is_grey = self.f0.r == self.f0.g && self.f0.g == self.f0.b;
+        if is_grey && !self.is_dispersive() {
+            return Rgb::splat(value(g));
+        }
+        Rgb::new(value(r), value(g), value(b))
     }
 
     /// Density of [`Glass::sample`] of a rough border.

@@ -255,16 +255,20 @@ impl Layered {
             return Rgb::BLACK;
         }
         let once = glass.reflected(&self.ggx, pair.wo, pair.wi, pair.is_inside);
-        let again = match glass.is_thin && !has_mirrors {
-            true => self.between_panes(pair, glass.reflectance(0.5, false)),
-            false => Rgb::BLACK,
+        let again = match has_mirrors {
+            true => Rgb::BLACK,
+            false => self.between_borders(pair, glass.reflectance(0.5, false)),
         };
         (once + again) * (share * self.kept.glass)
     }
 
-    /// What leaves a rough pane after several facets, on one side: `part` of it.
-    fn between_panes(&self, pair: &Pair, part: Rgb) -> Rgb {
-        part * self.between_facets(pair.wo.z.abs(), pair.wi.z.abs())
+    /// What leaves rough glass after several facets, on one side: of a pane, `part` of it.
+    fn between_borders(&self, pair: &Pair, part: Rgb) -> Rgb {
+        let (_, glass) = &self.glass;
+        match glass.is_thin {
+            true => part * self.between_facets(pair.wo.z.abs(), pair.wi.z.abs()),
+            false => glass.between_facets(&self.ggx, pair.wo, pair.wi, pair.is_inside),
+        }
     }
 
     /// Value for light from the far side, below coat and sheen.
@@ -284,13 +288,8 @@ impl Layered {
             return matte;
         }
         let once = glass.transmitted(&self.ggx, wo, wi, is_inside);
-        let again = match glass.is_thin {
-            true => {
-                let part = Rgb::WHITE - glass.reflectance(0.5, false);
-                self.between_panes(pair, part * glass.tint)
-            }
-            false => Rgb::BLACK,
-        };
+        let part = Rgb::WHITE - glass.reflectance(0.5, false);
+        let again = self.between_borders(pair, part * glass.tint);
         matte + (once + again) * *share
     }
 
@@ -420,9 +419,11 @@ impl Layered {
         let lost = lost(table);
         let shown = self.shown_below().0(cos);
         let again = self.returned().max_channel() * lost;
-        let pane = match glass.is_thin && *glass_share > 0.0 && !self.is_mirror() {
-            true => *glass_share * lost,
-            false => 0.0,
+        let is_rough = *glass_share > 0.0 && !self.is_mirror() && !glass.is_invisible();
+        let (near, far) = match is_rough {
+            true if glass.is_thin => (0.5 * lost, lost),
+            true => glass.lost(&self.ggx, cos, pair.is_inside),
+            false => (0.0, 0.0),
         };
         let glass = match *glass_share > 0.0 {
             true => {
@@ -438,8 +439,8 @@ impl Layered {
             sheen * (1.0 - coat),
             facets * below,
             glass * below,
-            (self.diffuse.max_channel() * shown + again + pane * 0.5) * below,
-            (self.translucent.max_channel() * shown + pane) * below,
+            (self.diffuse.max_channel() * shown + again + near * glass_share) * below,
+            (self.translucent.max_channel() * shown + far * glass_share) * below,
         ];
         let sum: f32 = shares.iter().sum();
         (sum > 0.0 && sum.is_finite()).then(|| shares.map(|share| share / sum))

@@ -3,6 +3,7 @@
 //! A [`Material`] is evaluated at an interaction and gives a [`Bsdf`]; one file a kind.
 
 mod albedo;
+mod border;
 mod bsdf;
 mod coat;
 mod extension;

@@ -44,7 +44,8 @@ impl Bsdf {
     /// [`Bsdf::value`] and [`Bsdf::pdf`].
     pub fn value_and_pdf(&self, view: &View, wi: UnitVec3) -> (Rgb, f32) {
         let pair = view.pair(wi);
-        (self.lobes.value(&pair, false), self.pair_pdf(&pair))
+        let value = self.kept(self.lobes.value(&pair, false));
+        (value, self.pair_pdf(&pair))
     }
 
     fn pair_pdf(&self, pair: &Pair) -> f32 {
@@ -77,7 +78,7 @@ impl Bsdf {
         match drawn {
             Drawn::Specular(wi, weight) => Some(BsdfSample {
                 wi: UnitVec3::normalize(view.frame.to_world(wi))?,
-                weight,
+                weight: self.kept(weight),
                 pdf: 0.0,
                 is_specular: true,
                 is_transmitted: wi.z < 0.0,

@@ -57,6 +57,18 @@ impl IntegratorKind {
         Self::Albedo,
     ];
 
+    /// Scattering events of a path, where nobody says how many.
+    ///
+    /// Rays of `whitted` may split at each. Paths end by chance where they carry little; the rest,
+    /// in glass that holds light by total reflection, is worth following: eight events lose 3 % of
+    /// the light of a picture of a vase, and its rim is black.
+    pub fn depth(self) -> u32 {
+        match self {
+            Self::Path => 64,
+            Self::Whitted | Self::Normal | Self::Depth | Self::Albedo => 8,
+        }
+    }
+
     /// As in scene files and on the command line.
     pub fn name(self) -> &'static str {
         match self {
@@ -107,8 +119,9 @@ pub struct Settings {
     pub sampling: SamplingConfig,
     /// What is computed.
     pub integrator: IntegratorKind,
-    /// Scattering events of a path: 1 is direct light only.
-    pub max_depth: u32,
+    /// Scattering events of a path: 1 is direct light only. `None` is what the integrator takes
+    /// by itself ([`IntegratorKind::depth`]).
+    pub max_depth: Option<u32>,
     /// Whether shadow rays start on the smooth surface that vertex normals describe
     /// ([`crate::interaction::LitSide`]), and not on the triangle.
     pub shadow_terminator: bool,
@@ -121,13 +134,20 @@ pub struct Settings {
     pub transparent: bool,
 }
 
+impl Settings {
+    /// Scattering events of a path.
+    pub fn depth(&self) -> u32 {
+        self.max_depth.unwrap_or(self.integrator.depth())
+    }
+}
+
 impl Default for Settings {
     fn default() -> Self {
         Self {
             size: UVec2::new(1280, 720),
             sampling: SamplingConfig::default(),
             integrator: IntegratorKind::Whitted,
-            max_depth: 8,
+            max_depth: None,
             shadow_terminator: true,
             light_samples: None,
             clamp: None,

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use halfshade::scene::Settings;
+use halfshade::scene::{IntegratorKind, Settings};
 
 use super::{OBJ, folder, render, run, stderr, stdout};
 
@@ -132,7 +132,14 @@ fn the_help_knows_the_defaults() {
             "--integrator",
             "path for a glTF file by itself, or whitted".to_owned(),
         ),
-        ("--max-depth", settings.max_depth.to_string()),
+        (
+            "--max-depth",
+            format!(
+                "{} in path and {} in whitted",
+                IntegratorKind::Path.depth(),
+                IntegratorKind::Whitted.depth()
+            ),
+        ),
         ("--samples", sampling.samples.to_string()),
         ("--pattern", sampling.pattern.name().to_owned()),
         ("--target", sampling.target.name().to_owned()),

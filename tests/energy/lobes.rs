@@ -262,31 +262,81 @@ fn reflection_is_the_same_both_ways() {
     }
 }
 
-/// What rough surfaces lose: light that meets several facets is added by tables, but for that
-/// which is refracted.
+/// Basic radiance L/n², as paths carry it: what is refracted from outside to inside weighs more
+/// than the way back by the square of the index.
+#[test]
+fn refraction_is_the_same_both_ways() {
+    for (roughness, index) in [(0.3, 1.5), (0.6, 1.33), (1.0, 1.5), (1.0, 2.4)] {
+        let bsdf = bsdf(&materials::body(roughness, index));
+        let mut state = 6;
+        let mut met = 0;
+        for _ in 0..1500 {
+            let (a, u) = point(&mut state);
+            let [above, below] = [a, u.x].map(|z| f64::from(z) * 0.99 + 0.01);
+            let [here, there] = [f64::from(u.y), 40.0 * f64::from(a)].map(|turn| TAU * turn);
+            // From the other side the frame is turned about x.
+            let outside = View {
+                wo: direction(above, here),
+                ..view(90.0, false)
+            };
+            let inside = View {
+                wo: direction(below, -there),
+                ..view(90.0, true)
+            };
+            let f = bsdf.value(&outside, direction(-below, there)).g;
+            let g = bsdf.value(&inside, direction(-above, -here)).g * index * index;
+            met += u32::from(f > 0.0);
+            let what = format!("roughness {roughness}, index {index}");
+            assert!((f - g).abs() <= 2e-3 * f.max(g) + 1e-6, "{what}: {f} {g}");
+        }
+        assert!(met > 500, "{met}");
+    }
+}
+
+/// What rough surfaces lose: light that meets several facets is added by tables.
 #[test]
 fn white_lobes_lose_little() {
-    type Kind = (&'static str, fn(f32) -> Material, f64);
-    let kinds: [Kind; 4] = [
-        ("metal", materials::metal, 0.015),
-        ("plastic", materials::plastic, 0.015),
+    type Kind = (&'static str, fn(f32) -> Material, bool, f64);
+    let kinds: [Kind; 7] = [
+        ("metal", materials::metal, false, 0.015),
+        ("plastic", materials::plastic, false, 0.015),
         (
             "pane",
             |roughness| materials::glass(roughness, false, 0.0),
+            false,
             0.02,
         ),
         (
             "body",
-            |roughness| materials::glass(roughness, true, 0.0),
-            0.35,
+            |roughness| materials::body(roughness, 1.5),
+            false,
+            0.015,
+        ),
+        (
+            "body from inside",
+            |roughness| materials::body(roughness, 1.5),
+            true,
+            0.015,
+        ),
+        (
+            "diamond",
+            |roughness| materials::body(roughness, 2.4),
+            true,
+            0.015,
+        ),
+        (
+            "prism",
+            |roughness| materials::glass(roughness, true, 3.0),
+            true,
+            0.015,
         ),
     ];
-    for (name, material, most) in kinds {
+    for (name, material, is_inside, most) in kinds {
         let mut text = String::new();
         for roughness in [0.3, 0.45, 0.6, 0.8, 1.0f32] {
             let bsdf = bsdf(&material(roughness));
             let losses = [12.0, 35.0, 60.0, 90.0].map(|degrees| {
-                let [_, green, _] = mean_weight(&bsdf, &view(degrees, false), 20_000);
+                let [_, green, _] = mean_weight(&bsdf, &view(degrees, is_inside), 20_000);
                 let loss = 1.0 - green.mean();
                 (loss, loss - 4.0 * green.standard_error())
             });

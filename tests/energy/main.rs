@@ -35,7 +35,7 @@ fn solid_glass_of_any_roughness_stays_below_a_uniform_sky() {
             ambient: Rgb::WHITE,
         };
         let settings = Settings {
-            max_depth: 64,
+            max_depth: Some(64),
             ..settings(1, Pattern::Sobol)
         };
         for i in 0..40 {

@@ -88,6 +88,13 @@ pub fn glass(roughness: f32, is_body: bool, dispersion: f32) -> Material {
     })
 }
 
+/// The border of a white body of an index.
+pub fn body(roughness: f32, index: f32) -> Material {
+    with(glass(roughness, true, 0.0), |m| {
+        m.index_of_refraction = index;
+    })
+}
+
 fn coated(base: Material, share: f32, roughness: f32) -> Material {
     with(base, |m| {
         m.clearcoat = Some(Clearcoat {
@@ -164,6 +171,23 @@ pub fn cases() -> Vec<Case> {
         case("Phong 20", glossy(20.0)),
         narrow("Phong 1e6", glossy(1e6)),
         case("mirror and glass over matte", mirror),
+        case(
+            "colours beyond 1",
+            phong(|p| {
+                p.diffuse = rgb(0.8, 0.8, 0.2);
+                p.specular = rgb(0.5, 0.5, 0.5);
+                p.exponent = scalar(10.0);
+            }),
+        ),
+        case(
+            "glass with a highlight",
+            phong(|p| {
+                p.specular = rgb(0.04, 0.04, 0.04);
+                p.exponent = scalar(40.0);
+                p.transmit = Rgb::WHITE;
+                p.index_of_refraction = 1.5;
+            }),
+        ),
         narrow("mirror of metal", metal(0.0)),
         narrow("smooth metal", metal(0.05)),
         case("metal 0.3", metal(0.3)),
@@ -181,9 +205,32 @@ pub fn cases() -> Vec<Case> {
         case("very rough body", glass(1.0, true, 0.0)),
         inside("rough body from inside", glass(0.5, true, 0.0)),
         inside("very rough body from inside", glass(1.0, true, 0.0)),
+        case("very rough water", body(1.0, 1.33)),
+        inside("rough water from inside", body(0.7, 1.33)),
+        case("very rough diamond", body(1.0, 2.4)),
+        inside("very rough diamond from inside", body(1.0, 2.4)),
+        case(
+            "rough body that hardly mirrors",
+            with(body(0.8, 1.5), |m| m.specular = scalar(0.1)),
+        ),
+        inside(
+            "rough body of coloured specular from inside",
+            with(body(0.8, 1.5), |m| m.specular_color = rgb(3.0, 1.0, 0.0)),
+        ),
+        case(
+            "brushed body",
+            with(body(0.4, 1.5), |m| {
+                m.anisotropy = Some(Anisotropy {
+                    strength: 0.8,
+                    rotation: 0.0,
+                    texture: None,
+                });
+            }),
+        ),
         narrow("smooth prism", glass(0.0, true, 3.0)),
         case("rough prism", glass(0.5, true, 3.0)),
         inside("rough prism from inside", glass(0.5, true, 3.0)),
+        inside("very rough prism from inside", glass(1.0, true, 3.0)),
         case(
             "half glass",
             with(glass(0.5, true, 0.0), |m| {
@@ -210,6 +257,11 @@ pub fn cases() -> Vec<Case> {
             ),
         ),
         case("film on glass", film(glass(0.4, true, 0.0), 500.0)),
+        case("film on rough glass", film(glass(1.0, true, 0.0), 200.0)),
+        inside(
+            "film on rough glass from inside",
+            film(glass(1.0, true, 0.0), 200.0),
+        ),
         narrow("film on smooth glass", film(glass(0.0, true, 0.0), 500.0)),
         case("leaf", leaf(0.5)),
         case("coated leaf", coated(cloth(leaf(0.6), 0.5), 0.5, 0.4)),

@@ -22,7 +22,7 @@ use crate::common::floor::{disk, irradiance, matte, plane};
 pub fn path(samples: u32, max_depth: u32) -> Settings {
     Settings {
         integrator: IntegratorKind::Path,
-        max_depth,
+        max_depth: Some(max_depth),
         size: UVec2::new(24, 18),
         sampling: SamplingConfig {
             samples,

@@ -149,9 +149,9 @@ fn models_by_themselves_have_their_technique() {
     let files = Files::new();
     let kind = |name: &str, overrides: &[(&str, &str)]| {
         let imported = files.import(name, &with(overrides)).unwrap();
-        (imported.settings.integrator, imported.settings.max_depth)
+        (imported.settings.integrator, imported.settings.depth())
     };
-    assert_eq!(kind("studio.gltf", &[]), (IntegratorKind::Path, 8));
+    assert_eq!(kind("studio.gltf", &[]), (IntegratorKind::Path, 64));
     assert_eq!(kind("triangle.obj", &[]), (IntegratorKind::Whitted, 8));
     let asked = [
         ("integrator.kind", "\"whitted\""),

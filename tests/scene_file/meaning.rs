@@ -45,7 +45,7 @@ fn settings_are_read() {
             seed: u64::MAX,
         },
         integrator: IntegratorKind::Depth,
-        max_depth: 3,
+        max_depth: Some(3),
         shadow_terminator: false,
         ..Settings::default()
     };

@@ -45,7 +45,7 @@
 //! | key | range | default | |
 //! |---|---|---|---|
 //! | `kind` | `"whitted"`, `"path"`, `"normal"`, `"depth"`, `"albedo"` | `"whitted"`; `"path"` for a glTF file by itself | how light is followed, or what else is shown |
-//! | `max_depth` | 1 to 1,024 | 8 | scattering events of a path; 1 is direct light only |
+//! | `max_depth` | 1 to 1,024 | 64 in `path`, 8 in `whitted` | scattering events of a path; 1 is direct light only |
 //! | `clamp` | > 0 | none | most radiance that light brings which was scattered more than once; what that takes away is said (`path`) |
 //! | `shadow_terminator` | `true`, `false` | `true` | whether shadow rays start on the smooth surface that vertex normals describe, so that no facets show where light ends |
 //!

@@ -29,9 +29,7 @@ pub fn read(root: &Section) -> Result<Settings, ImportError> {
         settings.integrator = section
             .get("kind", integrator)?
             .unwrap_or(settings.integrator);
-        settings.max_depth = section
-            .get("max_depth", |v| v.integer_u32(1, MAX_DEPTH))?
-            .unwrap_or(settings.max_depth);
+        settings.max_depth = section.get("max_depth", |v| v.integer_u32(1, MAX_DEPTH))?;
         settings.clamp = section.get("clamp", |v| v.single(POSITIVE))?;
         settings.shadow_terminator = section
             .get("shadow_terminator", |v| v.boolean())?

@@ -59,7 +59,7 @@ impl<'a> PathTracer<'a> {
         };
         Self {
             scene,
-            max_depth: settings.max_depth,
+            max_depth: settings.depth(),
             smooths_shadows: settings.shadow_terminator,
             clamp: settings.clamp.unwrap_or(f32::INFINITY),
             samples: (scene.lights.iter())

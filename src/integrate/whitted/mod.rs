@@ -147,7 +147,7 @@ impl<'a> Whitted<'a> {
         let samples = |light| light_samples(light, settings.light_samples, pattern);
         Self {
             scene,
-            max_depth: settings.max_depth,
+            max_depth: settings.depth(),
             smooths_shadows: settings.shadow_terminator,
             samples: scene.lights.iter().map(samples).collect(),
             visible: (0..)

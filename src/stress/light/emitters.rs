@@ -142,7 +142,7 @@ pub fn rectangles(effort: Effort) -> Vec<Check> {
 /// that receives them, and whose size is that of the light's distance.
 fn by_paths(what: &str, lights: &[(Light, f64)], effort: Effort) -> Check {
     let settings = Settings {
-        max_depth: 1,
+        max_depth: Some(1),
         ..paths(Pattern::Random)
     };
     let worst = lights.iter().map(|(light, exact)| {

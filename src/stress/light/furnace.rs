@@ -53,7 +53,7 @@ fn sky() -> Background {
 
 fn deep() -> Settings {
     Settings {
-        max_depth: 64,
+        max_depth: Some(64),
         ..settings(1, Pattern::Sobol)
     }
 }
@@ -75,7 +75,7 @@ fn matte() -> f64 {
 /// Inside of matte walls that give off what they take, after so many bounces that none is missing.
 fn paths_in_a_box(effort: Effort) -> Check {
     let settings = Settings {
-        max_depth: 1024,
+        max_depth: Some(1024),
         ..paths(Pattern::Random)
     };
     let worst = [0.0f32, 0.5, 0.9, 0.99].map(|albedo| {
@@ -119,7 +119,7 @@ fn paths_under_a_sky() -> f64 {
     );
     scene.background.radiance = Rgb::WHITE;
     let settings = Settings {
-        max_depth: 1024,
+        max_depth: Some(1024),
         ..paths(Pattern::Sobol)
     };
     let errors = (0..50).map(|i| {

@@ -96,7 +96,7 @@ fn slabs(steps: u32) -> Sweep {
 /// In a uniform surrounding glass is invisible: all energy comes out again.
 fn furnace() -> f64 {
     let deep = Settings {
-        max_depth: 1024,
+        max_depth: Some(1024),
         ..settings(1, Pattern::Sobol)
     };
     let lost = |n: f32| {

@@ -21,7 +21,7 @@ pub fn run(effort: Effort) -> Vec<Check> {
         let limit = 2.0 / (1.0 - k64);
         let points = [1, 2, 4, 8, 64, 1024].map(|depth| {
             let settings = Settings {
-                max_depth: depth,
+                max_depth: Some(depth),
                 ..settings(1, Pattern::Sobol)
             };
             let got = f64::from(radiance(&scene, Vec3::ZERO, Vec3::Z, &settings).r);
@@ -40,7 +40,7 @@ pub fn run(effort: Effort) -> Vec<Check> {
 /// The same by `path`, which ends long series by chance.
 fn by_paths(effort: Effort) -> Check {
     let settings = Settings {
-        max_depth: 1024,
+        max_depth: Some(1024),
         ..paths(Pattern::Random)
     };
     let worst = [0.2, 0.5, 0.9, 0.99].map(|k: f32| {
