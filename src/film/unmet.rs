@@ -180,8 +180,8 @@ mod tests {
 
     #[test]
     fn the_interval_covers_edges_of_lamps_wherever_they_are() {
-        const PICTURES: u64 = 600;
-        for (samples, lamp) in [(2, 100.0), (8, 100.0), (16, 100.0), (32, 1e4), (64, 100.0)] {
+        const PICTURES: u64 = 400;
+        for (samples, lamp) in [(2, 100.0), (8, 100.0), (16, 100.0), (32, 1e4)] {
             let [mut below, mut above, mut plain] = [0; 3];
             for seed in 0..PICTURES {
                 let (pixels, truth) = picture(seed, samples, lamp);
@@ -198,8 +198,7 @@ mod tests {
             let [below, above, plain] =
                 [below, above, plain].map(|c| 100.0 * c as f64 / PICTURES as f64);
             let seen = format!("{samples}, {lamp}: {below} % below, {above} % above; {plain} %");
-            println!("{seen}");
-            // 2.5 % each, with the chance of 600 pictures.
+            // 2.5 % each, with the chance of 400 pictures.
             assert!(below < 5.0 && above < 4.5, "{seen}");
             assert!(plain < 91.0, "{seen}");
         }
