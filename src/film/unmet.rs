@@ -127,6 +127,7 @@ impl Slivers {
 }
 
 #[cfg(test)]
+#[allow(clippy::expect_used)]
 mod tests {
     use super::super::{ErrorEstimate, ErrorSums};
     use super::*;
