@@ -8,9 +8,17 @@
 //! With errors `a` and `b` of the halves, the true squared error of a pixel is `(a + b)²/4` and the estimate
 //! `(a - b)²/4`: two numbers of one distribution, the difference of which, `ab`, is 0 on average. Over a picture
 //! their ratio is close to Fisher's F, both its degrees of freedom those of the sum (Satterthwaite 1946, "An
-//! Approximate Distribution of Estimates of Variance Components"); the interval is that of F.
+//! Approximate Distribution of Estimates of Variance Components"); the interval is that of F, and wider by what the
+//! halves do not tell:
+//!
+//! * What the truth is divided by is not known, and replaced by something corrected for its own error
+//!   ([`Pixel::relative_squared_error`]). The correction is as uncertain as it is large: the lower end goes without it, and the
+//!   upper end has it twice. It falls with the error itself, and with the number of samples.
+//! * The upper end has room for slivers of bright things that hardly a sample met (`unmet.rs`).
+//!
+//! Both vanish where samples are many and no edge is bright.
 
-use super::Pixel;
+use super::{Pixel, unmet};
 
 /// What the denominator of relMSE adds to the square of the reference.
 pub const RELATIVE_FLOOR: f64 = 0.01;
@@ -26,7 +34,7 @@ pub struct ErrorEstimate {
     pub estimate: f64,
     /// Lower end of the interval that holds the picture's true √relMSE in 95 % of all pictures.
     pub low: f64,
-    /// Its upper end; infinite where too few pixels carry the error to tell.
+    /// Its upper end: far away where few pixels carry the error, or bright edges may be missed by all samples of a pixel.
     pub high: f64,
     /// The share of the estimated relMSE, `[0, 1]`, that the worst 0.1 % of the pixels carry. Where that
     /// is most of it, the interval rests on few samples.
@@ -34,17 +42,30 @@ pub struct ErrorEstimate {
 }
 
 impl ErrorEstimate {
-    /// The estimate for these pixels; `None` where there are none, or one has samples in one half only.
-    pub fn of(pixels: &[Pixel]) -> Option<Self> {
+    /// The estimate for these pixels, in rows of `width`; `None` where there are none, or one has samples in one half
+    /// only.
+    pub fn of(pixels: &[Pixel], width: usize) -> Option<Self> {
         let mut squares = Vec::with_capacity(pixels.len());
         let mut sums = ErrorSums::default();
+        let mut uncorrected = 0.0;
         for pixel in pixels {
             let square = pixel.relative_squared_error()?;
             sums.add(square);
             squares.push(square as f32);
+            let weights = relative_weights(pixel.value());
+            uncorrected += (0..3)
+                .map(|c| pixel.squared_error()[c] * weights[c])
+                .sum::<f64>();
         }
         let mut estimate = sums.estimate()?;
         estimate.worst_share = worst_share(&mut squares);
+        if sums.sum() > 0.0 {
+            let correction = (sums.sum() / uncorrected).sqrt();
+            estimate.low /= correction;
+            estimate.high *= correction;
+        }
+        let room = unmet::room(pixels, width) / (3 * pixels.len()) as f64;
+        estimate.high = estimate.high.hypot(room.sqrt());
         Some(estimate)
     }
 }
@@ -117,7 +138,7 @@ impl ErrorSums {
         }
     }
 
-    /// The estimate, without the share of the worst pixels; `None` without pixels.
+    /// The estimate with the interval of F alone, without the share of the worst pixels; `None` without pixels.
     pub fn estimate(&self) -> Option<ErrorEstimate> {
         if self.pixels == 0 {
             return None;
@@ -177,7 +198,7 @@ mod tests {
         // Means 1, squared errors 0.01 and 0, two samples each: relMSE = 0.01 / (1.01 - 0.01 / 2) / 2.
         let pixels = [pixel(0.9, 1.1), pixel(1.0, 1.0)];
         let expected = (0.01_f64 / 1.005 / 2.0).sqrt();
-        let got = ErrorEstimate::of(&pixels).map(|e| e.estimate);
+        let got = ErrorEstimate::of(&pixels, 10).map(|e| e.estimate);
         assert!(got.is_some_and(|got| (got - expected).abs() < 1e-6));
     }
 
@@ -211,8 +232,8 @@ mod tests {
     fn half_a_pixel_tells_nothing() {
         let mut half = Pixel::default();
         half.add_sample(0, Rgb::WHITE);
-        assert_eq!(ErrorEstimate::of(&[pixel(1.0, 1.0), half]), None);
-        assert_eq!(ErrorEstimate::of(&[]), None);
+        assert_eq!(ErrorEstimate::of(&[pixel(1.0, 1.0), half], 2), None);
+        assert_eq!(ErrorEstimate::of(&[], 0), None);
     }
 
     /// Quantiles of F from a table (97.5 %, equal degrees of freedom).
@@ -227,10 +248,10 @@ mod tests {
     #[test]
     fn one_bad_pixel_shows_in_the_share_and_the_interval() {
         let mut pixels = vec![pixel(0.9, 1.1); 1000];
-        let even = ErrorEstimate::of(&pixels).map(|e| (e.worst_share, e.high / e.estimate));
+        let even = ErrorEstimate::of(&pixels, 10).map(|e| (e.worst_share, e.high / e.estimate));
         assert!(even.is_some_and(|(share, factor)| share < 0.0011 && factor < 1.04));
         pixels[7] = pixel(0.0, 200.0);
-        let uneven = ErrorEstimate::of(&pixels).map(|e| (e.worst_share, e.high / e.estimate));
+        let uneven = ErrorEstimate::of(&pixels, 10).map(|e| (e.worst_share, e.high / e.estimate));
         assert!(uneven.is_some_and(|(share, factor)| share > 0.09 && factor > 1.05));
     }
 }

@@ -7,6 +7,7 @@
 
 mod estimate;
 mod pixel;
+mod unmet;
 
 pub use estimate::{ErrorEstimate, ErrorSums, RELATIVE_FLOOR, relative_weights};
 pub use pixel::{Moments, Pixel};
@@ -184,7 +185,7 @@ impl Film {
 
     /// How wrong the picture is; `None` where its pattern or its samples do not tell.
     pub fn error(&self) -> Option<ErrorEstimate> {
-        ErrorEstimate::of(&self.pixels)
+        ErrorEstimate::of(&self.pixels, self.rect.width as usize)
     }
 
     /// Share of the luminance of all samples that clamping took; 0 where it took nothing.

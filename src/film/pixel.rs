@@ -54,6 +54,14 @@ impl Moments {
         self.deviation.map(|d| d / degrees)
     }
 
+    /// Sums of the samples and of their squares, by channel.
+    #[inline]
+    pub(super) fn sums(&self) -> [[f64; 3]; 2] {
+        let count = self.count as f64;
+        let squares = |c: usize| self.deviation[c] + count * self.mean[c] * self.mean[c];
+        [self.mean.map(|m| count * m), std::array::from_fn(squares)]
+    }
+
     /// Their number.
     #[inline]
     pub fn count(&self) -> u64 {
