@@ -8,14 +8,15 @@ use std::sync::atomic::AtomicBool;
 use common::build::*;
 use halfshade::bvh::Builder;
 use halfshade::color::Rgb;
-use halfshade::film::{Rect, StoppedBy};
+use halfshade::film::{RayCounts, Rect, StoppedBy};
+use halfshade::integrate::{Account, CameraRow, LightGroups, LightPart, RayLog, integrator};
 use halfshade::light::{DistantLight, Light, RectangleLight};
 use halfshade::material::{AlphaMode, Material};
-use halfshade::math::{DAffine3, DQuat, DVec3, UnitVec3, Vec3};
+use halfshade::math::{DAffine3, DQuat, DVec3, ROW, UVec2, UnitVec3, Vec2, Vec3};
 use halfshade::prepare::prepare;
 use halfshade::render::{Event, Job, render, replay};
-use halfshade::sampling::{Pattern, SamplingConfig};
-use halfshade::scene::Settings;
+use halfshade::sampling::{Pattern, Sampler, SamplingConfig};
+use halfshade::scene::{IntegratorKind, Settings};
 use halfshade::stress::still_life::{camera, scene, settings};
 use halfshade::texture::{TexturedRgb, TexturedScalar};
 
@@ -135,6 +136,61 @@ fn surfaces_that_are_lit_in_rows_have_the_bits_of_those_that_are_not() {
             [&plain, &masked].map(|scene| picture(scene, &camera(1.0), &settings));
         assert_eq!(bits(&plain), bits(&masked), "{pattern:?}");
         assert_eq!(plain.rays, masked.rays, "{pattern:?}");
+    }
+}
+
+/// Rows of any number of samples, by themselves and with all that layers ask for.
+#[test]
+fn samples_of_a_row_are_those_that_are_taken_one_by_one() {
+    let mut scene = scene(1.0);
+    let sun = DistantLight {
+        direction: UnitVec3::normalize(Vec3::new(0.3, -1.0, -0.4)).unwrap(),
+        irradiance: Rgb::WHITE,
+        angle_radians: 0.02,
+        samples: 1,
+    };
+    add_light(&mut scene, Light::Distant(sun));
+    let prepared = prepare(&scene, Builder::default()).scene;
+    let camera = prepared.camera(&camera(1.0));
+    let kinds = [IntegratorKind::Whitted, IntegratorKind::Path];
+    for (kind, pattern) in kinds.into_iter().flat_map(|k| PATTERNS.map(|p| (k, p))) {
+        let settings = Settings {
+            integrator: kind,
+            light_samples: Some(2),
+            ..settings(pattern)
+        };
+        let integrator = integrator(&prepared, &settings);
+        for count in [1, 11, 12, 13, 63, ROW as u32] {
+            let mut row = CameraRow::EMPTY;
+            for i in 0..count {
+                let pixel = UVec2::new(i * 7 % settings.size.x, i * 11 % settings.size.y);
+                let sampler = Sampler::new(&settings.sampling, pixel, i % 4);
+                let film = pixel.as_vec2() + sampler.camera();
+                let ray = camera.rays(settings.size).at(film, Vec2::ZERO);
+                row.rays.push(&ray);
+                row.samplers.push(&sampler);
+            }
+            for told in [0, count as usize] {
+                let account = || Account::new(LightGroups::default());
+                let accounts = |count| std::iter::repeat_with(account).take(count).collect();
+                let mut log = RayLog::told(accounts(told));
+                let mut together = [Rgb::BLACK; ROW];
+                integrator.radiances(&row, &mut together, &mut log);
+                let mut counts = RayCounts::default();
+                for (i, (ray, sampler)) in row.iter().enumerate() {
+                    let mut own = RayLog::told(accounts(told.min(1)));
+                    let alone = integrator.radiance(&ray, &sampler, &mut own);
+                    assert_eq!(alone, together[i], "{kind:?}, {pattern:?}, {i} of {count}");
+                    counts.add(&own.counts);
+                    if told > 0 {
+                        let parts = [LightPart::Direct, LightPart::Indirect];
+                        let of = |log: &RayLog, i: usize| parts.map(|p| log.accounts[i].light(p));
+                        assert_eq!(of(&own, 0), of(&log, i), "{kind:?}, {i} of {count}");
+                    }
+                }
+                assert_eq!(log.counts, counts, "{kind:?}, {pattern:?}, {count}");
+            }
+        }
     }
 }
 

@@ -188,7 +188,8 @@ pub struct LimitOptions {
     /// Stop so that the picture is saved this many seconds after the start, as good as it is then
     #[arg(long, value_name = "SECONDS", value_parser = arguments::positive)]
     pub time: Option<f64>,
-    /// Stop when the estimated relative RMSE, the square root of relMSE, is no larger
+    /// Stop when the estimated relative RMSE, the square root of relMSE, is no larger; that is the estimate, not
+    /// the upper end of its interval
     #[arg(long, value_name = "R", value_parser = arguments::positive)]
     pub error: Option<f64>,
     /// Samples go where the error is [default: with --time or --error]

@@ -74,7 +74,7 @@ pub struct ErrorStats {
     /// Square root of relMSE: the mean over pixels and channels of (a - b)² / (b² + 0.01).
     metric: &'static str,
     estimate: f64,
-    /// The 95 % interval; `null` where the error rests on so few pixels that it has no upper end.
+    /// The 95 % interval; no upper end is `null`.
     low: f64,
     high: Option<f64>,
     /// Of relMSE, in the worst 0.1 % of the pixels.

@@ -32,7 +32,8 @@ const WORST: f64 = 0.001;
 pub struct ErrorEstimate {
     /// √relMSE as estimated.
     pub estimate: f64,
-    /// Lower end of the interval that holds the picture's true √relMSE in 95 % of all pictures.
+    /// Lower end of the interval that is to hold the picture's true √relMSE in 95 % of all pictures, or more where bright
+    /// edges carry the error.
     pub low: f64,
     /// Its upper end: far away where few pixels carry the error, or bright edges may be missed by all samples of a pixel.
     pub high: f64,
@@ -103,6 +104,15 @@ pub struct ErrorSums {
 }
 
 impl ErrorSums {
+    /// Of these pixels; `None` where one has samples in one half only.
+    pub fn of(pixels: &[Pixel]) -> Option<Self> {
+        let mut sums = Self::default();
+        for pixel in pixels {
+            sums.add(pixel.relative_squared_error()?);
+        }
+        Some(sums)
+    }
+
     /// Adds a pixel with its part of relMSE.
     #[inline]
     pub fn add(&mut self, square: f64) {

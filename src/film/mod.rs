@@ -183,6 +183,11 @@ impl Film {
         self.pixels.iter().map(error).collect()
     }
 
+    /// What [`ErrorEstimate`] is made from; `None` where the picture's pattern or its samples do not tell.
+    pub fn error_sums(&self) -> Option<ErrorSums> {
+        ErrorSums::of(&self.pixels)
+    }
+
     /// How wrong the picture is; `None` where its pattern or its samples do not tell.
     pub fn error(&self) -> Option<ErrorEstimate> {
         ErrorEstimate::of(&self.pixels, self.rect.width as usize)

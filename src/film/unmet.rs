@@ -15,6 +15,7 @@
 //! Lippman-Hand 1983, "If Nothing Goes Wrong, Is Everything All Right?", for one pixel). Of sums of such parts, whose
 //! tails fall with 1/t, the largest decides (Foss, Korshunov and Zachary 2013, "An Introduction to Heavy-Tailed and
 //! Subexponential Distributions", 3.1); the others are left out.
+//! (For t < 1 the law is no more than an order of magnitude; such a room is less than one pixel that misses all of its truth.)
 
 use super::{Pixel, RELATIVE_FLOOR};
 

@@ -13,7 +13,7 @@ use super::{ImportError, files, images};
 use crate::color::{Rgb, srgb8_to_linear};
 use crate::light::Environment;
 #[cfg(feature = "exr")]
-use crate::scene::{MAX_PIXELS, most_pixels};
+use crate::scene::MAX_PIXELS;
 use crate::texture::Pixels;
 
 /// The first bytes of an OpenEXR file.
@@ -51,7 +51,7 @@ impl<'a> EnvironmentFile<'a> {
                 size.0, size.1
             )));
         }
-        if size.area() as u64 > most_pixels(self.bytes.len() as u64) {
+        if size.area() as u64 > files::most_pixels(self.bytes.len() as u64) {
             return Err(self.damaged(&format!(
                 "{} × {} pixels do not fit into its {} bytes",
                 size.0,

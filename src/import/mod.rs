@@ -27,6 +27,7 @@ use thiserror::Error;
 
 use crate::scene::{Keep, LeftOut, Needs, Scene, Settings};
 #[cfg(feature = "gltf")]
+pub use files::most_pixels;
 pub use gltf::{ExtensionSupport, Support, extension_table};
 pub use scene_file::{Defaults, SceneOptions};
 use undecoded::Undecoded;

@@ -103,7 +103,7 @@ impl RayLog {
         }
     }
 
-    /// Whether somebody listens, or nothing but counts is asked for.
+    /// Whether anything but counts is asked for.
     pub fn is_heard(&self) -> bool {
         self.records.is_some() || self.is_told()
     }

@@ -88,12 +88,14 @@ impl Light {
         of: u64,
         samples: &mut LightSampleRow,
     ) {
-        samples.has_direction = matches!(self, Light::Distant(_));
         match self {
             Light::Disk(light) if of.count_ones() as usize >= FEW => {
                 *samples = light.sample_row(points, u);
             }
             _ => {
+                // What another light left may be ends of another kind.
+                *samples = LightSampleRow::NONE;
+                samples.has_direction = matches!(self, Light::Distant(_));
                 for i in places(of) {
                     samples.set(i, self.sample(points.get(i), u[i]));
                 }

@@ -167,25 +167,38 @@ impl Bsdf {
 
     /// Value for light that comes from `wi`, on either side, 1/sr: all lobes that have area.
     pub fn value(&self, view: &View, wi: UnitVec3) -> Rgb {
-        self.kept(self.lobes.value(&view.pair(wi), false))
+        self.lobes.value(&view.pair(wi), false)
     }
 
-    /// What is left of `light` that was scattered. Colours of MTL files often add up to more than
-    /// 1; they are dimmed per channel until nothing is made, which paths would meet again and again.
-    pub(super) fn kept(&self, light: Rgb) -> Rgb {
+    /// The same without light from nothing: colours of MTL files often add up to more than 1, and techniques that follow
+    /// light again and again, as `path` does, would meet what they make at each bounce.
+    ///
+    /// Highlights give way first: beside a mirror they stand for what it shows anyway. What is still too much is
+    /// dimmed, channel by channel.
+    pub fn conserving(mut self) -> Self {
+        let specular = &mut self.specular;
         let Lobes::Phong {
             diffuse,
             reflectance,
             ..
-        } = &self.lobes
+        } = &mut self.lobes
         else {
-            return light;
+            return self;
         };
-        let all = *diffuse + *reflectance + self.specular.reflect + self.specular.transmit;
-        match all.max_channel() > 1.0 {
-            true => light * all.map(|sum| 1.0 / sum.max(1.0)),
-            false => light,
+        let others = *diffuse + specular.reflect + specular.transmit;
+        if (others + *reflectance).max_channel() > 1.0 {
+            let kept = others.map(|sum| 1.0 / sum.max(1.0));
+            for color in [diffuse, &mut specular.reflect, &mut specular.transmit] {
+                *color *= kept;
+            }
+            let room = others.map(|sum| (1.0 - sum).max(0.0));
+            *reflectance = Rgb::new(
+                reflectance.r.min(room.r),
+                reflectance.g.min(room.g),
+                reflectance.b.min(room.b),
+            );
         }
+        self
     }
 
     /// Reflectance of its matte base.
@@ -233,8 +246,9 @@ impl Bsdf {
         match &self.lobes {
             Lobes::Layered(layers) => layers.straight(&pair),
             Lobes::Phong { .. } => {
-                let eta = self.specular.relative_index(view.is_inside);
-                self.kept(self.specular.glass(pair.wo.z, eta).1)
+                let specular = self.conserving().specular;
+                let eta = specular.relative_index(view.is_inside);
+                specular.glass(pair.wo.z, eta).1
             }
         }
     }

@@ -44,8 +44,7 @@ impl Bsdf {
     /// [`Bsdf::value`] and [`Bsdf::pdf`].
     pub fn value_and_pdf(&self, view: &View, wi: UnitVec3) -> (Rgb, f32) {
         let pair = view.pair(wi);
-        let value = self.kept(self.lobes.value(&pair, false));
-        (value, self.pair_pdf(&pair))
+        (self.lobes.value(&pair, false), self.pair_pdf(&pair))
     }
 
     fn pair_pdf(&self, pair: &Pair) -> f32 {
@@ -78,7 +77,7 @@ impl Bsdf {
         match drawn {
             Drawn::Specular(wi, weight) => Some(BsdfSample {
                 wi: UnitVec3::normalize(view.frame.to_world(wi))?,
-                weight: self.kept(weight),
+                weight,
                 pdf: 0.0,
                 is_specular: true,
                 is_transmitted: wi.z < 0.0,

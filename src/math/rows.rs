@@ -161,3 +161,28 @@ pub fn places(mut row: u64) -> impl Iterator<Item = usize> {
 pub fn those_where(is_so: &[bool; ROW]) -> u64 {
     (0..ROW).fold(0, |all, i| all | u64::from(is_so[i]) << i)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rays_that_are_kept_move_together_in_their_order() {
+        for of in [0, 1, u64::MAX, 1 << 63, 0x8421_0000_ffff_0013] {
+            let mut rays = RayRow::EMPTY;
+            for i in 0..ROW {
+                rays.push(&Ray::new(Vec3::splat(i as f32), Vec3::X));
+            }
+            rays.keep(of);
+            assert_eq!(rays.count(), of.count_ones() as usize);
+            for (to, from) in places(of).enumerate() {
+                assert!(of >> from & 1 == 1);
+                assert_eq!(rays.get(to).origin, Vec3::splat(from as f32));
+            }
+        }
+        for count in [0, 1, 63, ROW] {
+            assert_eq!(places(first_places(count)).count(), count);
+            assert!(places(first_places(count)).eq(0..count));
+        }
+    }
+}

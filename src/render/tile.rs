@@ -109,7 +109,7 @@ impl Tile {
         self.take(job, &mut batch);
         self.rays.add(&batch.log.counts);
         self.cut_off.add(&batch.log.cut_off);
-        self.error = self.error_sums();
+        self.error = ErrorSums::of(&self.pixels);
         done
     }
 
@@ -127,8 +127,11 @@ impl Tile {
 
     /// Takes the samples of `batch`, and empties it.
     fn take(&mut self, job: &Job, batch: &mut Batch) {
-        batch.trace();
         let count = batch.count();
+        if count == 0 {
+            return;
+        }
+        batch.trace();
         let mut end = 0;
         for run in batch.places[..count].chunk_by(Place::is_same_half) {
             let Place { i, half, pixel } = run[0];
@@ -176,14 +179,6 @@ impl Tile {
                 }
             }
         }
-    }
-
-    fn error_sums(&self) -> Option<ErrorSums> {
-        let mut sums = ErrorSums::default();
-        for pixel in &self.pixels {
-            sums.add(pixel.relative_squared_error()?);
-        }
-        Some(sums)
     }
 }
 

@@ -18,8 +18,9 @@ use thiserror::Error;
 
 use super::Picture;
 use crate::color::{Rgb, srgb_to_linear, srgb8_to_linear};
+use crate::import::most_pixels;
 use crate::math::UVec2;
-use crate::scene::{MAX_PIXELS, most_pixels};
+use crate::scene::MAX_PIXELS;
 
 /// A picture from a file.
 #[derive(Clone, Debug)]

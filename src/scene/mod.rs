@@ -12,7 +12,7 @@ pub use left_out::{Keep, LeftOut, Needs, Omission};
 pub use mesh::{Attributes, Mesh, MeshError, MeshId};
 pub use settings::{
     Background, IntegratorKind, MAX_DEPTH, MAX_LIGHT_SAMPLES, MAX_PIXELS, MAX_SAMPLES, MAX_SIDE,
-    Settings, ToneMap, most_pixels,
+    Settings, ToneMap,
 };
 
 use rayon::prelude::*;

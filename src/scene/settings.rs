@@ -8,12 +8,6 @@ use crate::sampling::SamplingConfig;
 pub const MAX_SIDE: u32 = 1 << 16;
 /// Most pixels of a picture.
 pub const MAX_PIXELS: u64 = 1 << 28;
-
-/// The most pixels that a PNG or EXR file of so many bytes can hold: eight of one bit each in a byte, in the longest
-/// runs of deflate, 1,032 bytes to one. Nothing that these pack with packs more.
-pub fn most_pixels(bytes: u64) -> u64 {
-    bytes.saturating_mul(8 * 1032)
-}
 /// Most camera samples per pixel.
 pub const MAX_SAMPLES: u32 = 1 << 30;
 /// Most scattering events of a path: integrators recurse.

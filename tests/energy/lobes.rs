@@ -6,6 +6,7 @@ use std::f64::consts::TAU;
 use halfshade::color::Rgb;
 use halfshade::material::{Bsdf, Lookup, MAX_UV_SETS, Material, View};
 use halfshade::math::{DVec3, Frame, UnitVec3, Vec2};
+use halfshade::texture::{TexturedRgb, TexturedScalar};
 
 use crate::common::chi_square::{Moments, p_value};
 use crate::materials::{self, Case, cases};
@@ -32,13 +33,42 @@ pub fn view(degrees_above: f64, is_inside: bool) -> View {
     }
 }
 
+/// As paths use it.
 pub fn bsdf(material: &Material) -> Bsdf {
-    material.bsdf(&Lookup {
+    let lookup = Lookup {
         textures: &[],
         images: &[],
         uvs: [Vec2::ZERO; MAX_UV_SETS],
         color: [1.0; 4],
-    })
+    };
+    material.bsdf(&lookup).conserving()
+}
+
+/// A mirror of an MTL file has its colour as a highlight, too.
+#[test]
+fn colors_beyond_1_take_from_highlights_first() {
+    let of = |diffuse: f32, specular: f32, reflect: f32| {
+        let material = materials::phong(|p| {
+            p.diffuse = TexturedRgb::constant(Rgb::splat(diffuse));
+            p.specular = TexturedRgb::constant(Rgb::splat(specular));
+            p.exponent = TexturedScalar::constant(100.0);
+            p.reflect = Rgb::splat(reflect);
+        });
+        let bsdf = bsdf(&material);
+        // What of a white sky a mirror and everything sends back.
+        let all = mean_weight(&bsdf, &view(90.0, false), 20_000)[0].mean();
+        [bsdf.diffuse().g, bsdf.specular.reflect.g, all as f32]
+    };
+    for (given, kept) in [
+        ([0.0, 0.9, 0.9], [0.0, 0.9, 1.0]),
+        ([0.8, 0.5, 0.0], [0.8, 0.0, 1.0]),
+        ([0.3, 0.2, 0.1], [0.3, 0.1, 0.6]),
+        ([0.8, 0.5, 0.8], [0.5, 0.5, 1.0]),
+    ] {
+        let got = of(given[0], given[1], given[2]);
+        let is_near = |i: usize| (got[i] - kept[i]).abs() < 0.01;
+        assert!((0..3).all(is_near), "{given:?}: {got:?}");
+    }
 }
 
 /// Independent numbers in `[0, 1)` (SplitMix64).

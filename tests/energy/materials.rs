@@ -42,7 +42,7 @@ fn gltf(edit: impl FnOnce(&mut MetallicRoughness)) -> Material {
     }
 }
 
-fn phong(edit: impl FnOnce(&mut Phong)) -> Material {
+pub fn phong(edit: impl FnOnce(&mut Phong)) -> Material {
     let mut phong = Phong::matte(Rgb::BLACK);
     edit(&mut phong);
     Material {

@@ -128,7 +128,7 @@ fn phong(section: &Section, warnings: &mut Warnings) -> Result<Material, ImportE
     if sum.max_channel() > 1.0 + 1e-5 {
         let message = format!(
             "material \"{name}\" gives back up to {:.3} times the light that it receives: \
-             diffuse, specular, reflect and transmit should add up to no more than 1",
+             diffuse, specular, reflect and transmit should add up to no more than 1 (path dims them)",
             sum.max_channel()
         );
         warnings.add(WarningCode::BadValue, message);

@@ -90,7 +90,8 @@
 //! | `emission` | colour ≥ 0 | black | radiance that it gives off, W/(m² sr) |
 //!
 //! The four shares `diffuse`, `specular`, `reflect` and `transmit` should add up to no more than 1;
-//! where they add up to more there is a warning.
+//! where they add up to more there is a warning, and `path` takes from the highlight, then dims all of them.
+//! (`whitted` shows what is asked for.)
 //!
 //! Of `kind = "gltf"` (the metallic-roughness model; defaults are glTF's):
 //!

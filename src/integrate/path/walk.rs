@@ -123,7 +123,8 @@ impl<'a> PathTracer<'a> {
         if walk.is_viewing && self.scene.visibility(&walk.ray, hit) <= 0.0 {
             return None;
         }
-        let surface = self.scene.surface(&walk.ray, hit);
+        let mut surface = self.scene.surface(&walk.ray, hit);
+        surface.bsdf = surface.bsdf.conserving();
         let opacity = surface.material.opacity(&surface.lookup);
         if opacity >= 1.0 {
             return Some(surface);
