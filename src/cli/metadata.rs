@@ -1,6 +1,6 @@
 //! What an EXR file says about how it was made.
 
-use halfshade::film::Film;
+use halfshade::film::{ErrorEstimate, Film};
 use halfshade::scene::Settings;
 
 use super::options::RenderOptions;
@@ -10,6 +10,7 @@ pub fn metadata(
     options: &RenderOptions,
     settings: &Settings,
     film: &Film,
+    error: Option<&ErrorEstimate>,
 ) -> Vec<(&'static str, String)> {
     let crop = film.rect;
     let sampling = &settings.sampling;
@@ -39,7 +40,7 @@ pub fn metadata(
     if let Some(camera) = &options.picture.camera {
         metadata.push(("camera", camera.clone()));
     }
-    if let Some(error) = film.error() {
+    if let Some(error) = error {
         metadata.push(("estimated_relative_rmse", error.estimate.to_string()));
     }
     if let Some(seconds) = scene.reading.time_code {

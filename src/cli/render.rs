@@ -173,7 +173,8 @@ impl Work<'_> {
         self.seconds.render = self.clock.step();
         let layers = &options.output.layers;
         let mut values = LayerValues::of_film(&film, &self.kept, layers, &imported.scene);
-        let mut metadata = metadata(options, settings, &film);
+        let error = film.error();
+        let mut metadata = metadata(options, settings, &film, error.as_ref());
         if let Some(denoiser) = &self.denoiser {
             let version = values.denoise(denoiser, &film, &self.kept)?;
             metadata.push(("denoised", format!("Open Image Denoise {version}")));
@@ -205,7 +206,7 @@ impl Work<'_> {
             triangles: imported.scene.triangle_count(),
             seed: settings.sampling.seed,
             seconds: self.seconds,
-            error: film.error(),
+            error,
             left_out: &self.left_out,
             stability: &stability,
         };

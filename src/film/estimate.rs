@@ -18,6 +18,8 @@
 //!
 //! Both vanish where samples are many and no edge is bright.
 
+use rayon::prelude::*;
+
 use super::{Pixel, unmet};
 
 /// What the denominator of relMSE adds to the square of the reference.
@@ -46,18 +48,12 @@ impl ErrorEstimate {
     /// The estimate for these pixels, in rows of `width`; `None` where there are none, or one has samples in one half
     /// only.
     pub fn of(pixels: &[Pixel], width: usize) -> Option<Self> {
-        let mut squares = Vec::with_capacity(pixels.len());
-        let mut sums = ErrorSums::default();
-        let mut uncorrected = 0.0;
-        for pixel in pixels {
-            let square = pixel.relative_squared_error()?;
-            sums.add(square);
-            squares.push(square as f32);
-            let weights = relative_weights(pixel.value());
-            uncorrected += (0..3)
-                .map(|c| pixel.squared_error()[c] * weights[c])
-                .sum::<f64>();
-        }
+        let parts: Option<Vec<_>> = pixels.par_chunks(PART).map(Part::of).collect();
+        let Part {
+            sums,
+            uncorrected,
+            mut squares,
+        } = parts?.into_iter().fold(Part::default(), Part::and);
         let mut estimate = sums.estimate()?;
         estimate.worst_share = worst_share(&mut squares);
         if sums.sum() > 0.0 {
@@ -68,6 +64,40 @@ impl ErrorEstimate {
         let room = unmet::room(pixels, width) / (3 * pixels.len()) as f64;
         estimate.high = estimate.high.hypot(room.sqrt());
         Some(estimate)
+    }
+}
+
+/// Pixels that are summed by themselves: sums have an order, whatever the number of threads.
+pub(super) const PART: usize = 1 << 12;
+
+/// Sums over some pixels.
+#[derive(Default)]
+struct Part {
+    sums: ErrorSums,
+    /// The sum of their parts of relMSE with the square of the value in the place of the truth's.
+    uncorrected: f64,
+    squares: Vec<f32>,
+}
+
+impl Part {
+    fn of(pixels: &[Pixel]) -> Option<Self> {
+        let mut part = Self::default();
+        for pixel in pixels {
+            let square = pixel.relative_squared_error()?;
+            part.sums.add(square);
+            part.squares.push(square as f32);
+            let weights = relative_weights(pixel.value());
+            let squares = pixel.squared_error().into_iter().zip(weights);
+            part.uncorrected += squares.map(|(square, weight)| square * weight).sum::<f64>();
+        }
+        Some(part)
+    }
+
+    fn and(mut self, other: Self) -> Self {
+        self.sums.add_all(&other.sums);
+        self.uncorrected += other.uncorrected;
+        self.squares.extend(other.squares);
+        self
     }
 }
 

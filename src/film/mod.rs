@@ -12,6 +12,8 @@ mod unmet;
 pub use estimate::{ErrorEstimate, ErrorSums, RELATIVE_FLOOR, relative_weights};
 pub use pixel::{Moments, Pixel};
 
+use rayon::prelude::*;
+
 use crate::color::Rgb;
 use crate::math::UVec2;
 
@@ -210,12 +212,10 @@ impl Film {
 
     /// Smallest, mean and largest number of samples of a pixel.
     pub fn sample_counts(&self) -> (u64, f64, u64) {
-        let (mut least, mut total, mut most) = (u64::MAX, 0, 0);
-        for count in self.pixels.iter().map(Pixel::count) {
-            least = least.min(count);
-            total += count;
-            most = most.max(count);
-        }
+        let count = |pixel: &Pixel| [pixel.count(); 3];
+        let both = |a: [u64; 3], b: [u64; 3]| [a[0].min(b[0]), a[1] + b[1], a[2].max(b[2])];
+        let counts = self.pixels.par_iter().map(count);
+        let [least, total, most] = counts.reduce(|| [u64::MAX, 0, 0], both);
         let pixels = self.pixels.len().max(1);
         (least.min(most), total as f64 / pixels as f64, most)
     }

@@ -17,6 +17,9 @@
 //! Subexponential Distributions", 3.1); the others are left out.
 //! (For t < 1 the law is no more than an order of magnitude; such a room is less than one pixel that misses all of its truth.)
 
+use rayon::prelude::*;
+
+use super::estimate::PART;
 use super::{Pixel, RELATIVE_FLOOR};
 
 /// The share of all pictures in which a sliver weighs more than the room for it.
@@ -26,19 +29,24 @@ const CHANCE: f64 = 0.025;
 /// pictures. The pixels come in rows of `width`.
 pub(super) fn room(pixels: &[Pixel], width: usize) -> f64 {
     let width = width.max(1);
-    let radiances: Vec<_> = pixels.iter().map(brightest).collect();
-    let across: Vec<_> = radiances
-        .chunks(width)
-        .flat_map(|row| {
-            (0..row.len()).map(|x| largest(&row[x.saturating_sub(1)..row.len().min(x + 2)]))
-        })
-        .collect();
-    let mut slivers = Slivers::default();
-    for (i, pixel) in pixels.iter().enumerate() {
-        let above = across[i.checked_sub(width).unwrap_or(i)];
-        let below = *across.get(i + width).unwrap_or(&above);
-        slivers.add(pixel, largest(&[above, across[i], below]));
-    }
+    let radiances: Vec<_> = pixels.par_iter().map(brightest).collect();
+    let across = |i: usize| {
+        let (start, x) = (i - i % width, i % width);
+        let row = &radiances[start..radiances.len().min(start + width)];
+        largest(&row[x.saturating_sub(1)..row.len().min(x + 2)])
+    };
+    let across: Vec<_> = (0..pixels.len()).into_par_iter().map(across).collect();
+    let of_part = |(part, pixels): (usize, &[Pixel])| {
+        let mut slivers = Slivers::default();
+        for (i, pixel) in (part * PART..).zip(pixels) {
+            let above = across[i.checked_sub(width).unwrap_or(i)];
+            let below = *across.get(i + width).unwrap_or(&above);
+            slivers.add(pixel, largest(&[above, across[i], below]));
+        }
+        slivers
+    };
+    let parts: Vec<_> = pixels.par_chunks(PART).enumerate().map(of_part).collect();
+    let slivers = parts.iter().fold(Slivers::default(), Slivers::and);
     3.0 * slivers.largest_part()
 }
 
@@ -98,6 +106,14 @@ impl Slivers {
                 );
             }
         }
+    }
+
+    fn and(mut self, other: &Self) -> Self {
+        let sums = self.bins.iter_mut().flatten();
+        for (sum, other) in sums.zip(other.bins.iter().flatten()) {
+            *sum += other;
+        }
+        self
     }
 
     #[inline]

@@ -5,6 +5,7 @@
 
 mod lights;
 
+use rayon::prelude::*;
 use serde::Serialize;
 
 pub use lights::LightPlace;
@@ -99,7 +100,7 @@ impl Stability {
         leaks: Option<Leaks>,
         command: Option<&str>,
     ) -> Self {
-        let samples: u64 = film.pixels.iter().map(Pixel::count).sum();
+        let samples: u64 = film.pixels.par_iter().map(Pixel::count).sum();
         let dropped = dropped(film, command);
         let lights = lights::places(scene);
         let reasons = reasons(samples, &dropped, &lights, leaks);
@@ -130,7 +131,7 @@ impl Stability {
                 weight: film.cut_off.weight / samples.max(1) as f64,
             },
             lights,
-            beyond_half_float: film.pixels.iter().filter(beyond).count() as u64,
+            beyond_half_float: film.pixels.par_iter().filter(beyond).count() as u64,
             leaks: leaks.map(|leaks| LeakCounts {
                 meshes: leaks.meshes,
                 rays: leaks.rays,
@@ -179,7 +180,7 @@ fn dropped(film: &Film, command: Option<&str>) -> Dropped {
     let is_empty = |pixel: &&Pixel| pixel.count() == 0 && is_whole;
     Dropped {
         samples: film.rejected,
-        empty_pixels: film.pixels.iter().filter(is_empty).count() as u64,
+        empty_pixels: film.pixels.par_iter().filter(is_empty).count() as u64,
         first,
         replay: first
             .zip(command)
