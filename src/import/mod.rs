@@ -26,8 +26,8 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use crate::scene::{Keep, LeftOut, Needs, Scene, Settings};
-#[cfg(feature = "gltf")]
 pub use files::most_pixels;
+#[cfg(feature = "gltf")]
 pub use gltf::{ExtensionSupport, Support, extension_table};
 pub use scene_file::{Defaults, SceneOptions};
 use undecoded::Undecoded;
