@@ -72,6 +72,15 @@ fn a_crop_is_a_part_of_the_whole() {
     }
 }
 
+fn sun() -> Light {
+    Light::Distant(DistantLight {
+        direction: UnitVec3::normalize(Vec3::new(0.3, -1.0, -0.4)).unwrap(),
+        irradiance: Rgb::WHITE,
+        angle_radians: 0.02,
+        samples: 1,
+    })
+}
+
 /// Plain surfaces are lit in rows of samples; those with a mask, holes or not, one by one.
 #[test]
 fn surfaces_that_are_lit_in_rows_have_the_bits_of_those_that_are_not() {
@@ -116,13 +125,7 @@ fn surfaces_that_are_lit_in_rows_have_the_bits_of_those_that_are_not() {
         samples: 1,
     };
     add_light(&mut plain, Light::Rectangle(rectangle));
-    let sun = DistantLight {
-        direction: UnitVec3::normalize(Vec3::new(0.3, -1.0, -0.4)).unwrap(),
-        irradiance: Rgb::WHITE,
-        angle_radians: 0.02,
-        samples: 1,
-    };
-    add_light(&mut plain, Light::Distant(sun));
+    add_light(&mut plain, sun());
     let mut masked = plain.clone();
     for material in &mut masked.materials {
         material.alpha_mode = AlphaMode::Mask { cutoff: 0.5 };
@@ -143,13 +146,7 @@ fn surfaces_that_are_lit_in_rows_have_the_bits_of_those_that_are_not() {
 #[test]
 fn samples_of_a_row_are_those_that_are_taken_one_by_one() {
     let mut scene = scene(1.0);
-    let sun = DistantLight {
-        direction: UnitVec3::normalize(Vec3::new(0.3, -1.0, -0.4)).unwrap(),
-        irradiance: Rgb::WHITE,
-        angle_radians: 0.02,
-        samples: 1,
-    };
-    add_light(&mut scene, Light::Distant(sun));
+    add_light(&mut scene, sun());
     let prepared = prepare(&scene, Builder::default()).scene;
     let camera = prepared.camera(&camera(1.0));
     let kinds = [IntegratorKind::Whitted, IntegratorKind::Path];
