@@ -1,14 +1,10 @@
 //! Instances: trees that stand in the world several times, under a tree of their boxes.
 
-use super::build::build_over_boxes;
-use super::caster::{Caster, Window};
-use super::count::{Counter, Silent};
+use super::boxes::BoxTree;
+use super::count::Silent;
 use super::hit::{Hit, HitRow, Search};
-use super::layout::{ChildRef, Node};
-use super::simd::{Job, Lanes, Level, Run};
-use super::traverse::{Leaves, Stop, Walk};
 use super::tree::Bvh;
-use crate::math::{Aabb, DAffine3, DVec3, Ray, RayRow, UNIT_ROUNDOFF, Vec3};
+use crate::math::{Aabb, DAffine3, DVec3, Ray, RayRow, Vec3};
 
 /// What rays are traced through: one tree as it is, or instances of several.
 #[derive(Debug)]
@@ -107,10 +103,7 @@ impl Tracer {
     }
 }
 
-/// Children of a node over instances.
-const WIDTH: usize = 8;
-
-/// Condition numbers beyond this do not widen the boxes further; see [`Forest::slack`].
+/// Condition numbers beyond this do not widen the boxes further; see [`Forest::search`].
 const MAX_CONDITION: f64 = 64.0;
 
 /// Trees standing in the world, each any number of times.
@@ -121,15 +114,10 @@ const MAX_CONDITION: f64 = 64.0;
 pub struct Forest {
     trees: Vec<Bvh>,
     instances: Vec<Instance>,
-    nodes: Vec<Node<WIDTH>>,
-    /// Instance of each leaf of `nodes`.
-    leaves: Vec<u32>,
-    bounds: Aabb,
-    /// Largest magnitude of a coordinate of `bounds`.
-    reach: f32,
+    /// Over the instances.
+    boxes: BoxTree,
     /// Largest condition number of a transform, but [`MAX_CONDITION`] at most.
     condition: f64,
-    level: Level,
 }
 
 #[derive(Debug)]
@@ -155,17 +143,11 @@ impl Forest {
             })
             .collect();
         let boxes: Vec<Aabb> = instances.iter().map(|instance| instance.bounds).collect();
-        let (nodes, leaves) = build_over_boxes(&boxes);
-        let bounds = boxes.iter().copied().fold(Aabb::EMPTY, Aabb::union);
         Self {
             trees,
             instances,
-            nodes,
-            leaves,
-            bounds,
-            reach: bounds.min.abs().max(bounds.max.abs()).max_element(),
+            boxes: BoxTree::new(&boxes),
             condition: condition.min(MAX_CONDITION),
-            level: Level::best(),
         }
     }
 
@@ -176,7 +158,7 @@ impl Forest {
 
     /// As [`Tracer::closest_hit_if`].
     pub fn closest_hit_if(&self, ray: &Ray, accept: impl Fn(&Hit) -> bool) -> Option<Hit> {
-        self.search::<false, _>(ray, &accept, &mut Silent)
+        self.search::<false>(ray, &accept)
     }
 
     /// As [`Tracer::any_hit`].
@@ -186,12 +168,12 @@ impl Forest {
 
     /// As [`Tracer::any_hit_if`].
     pub fn any_hit_if(&self, ray: &Ray, accept: impl Fn(&Hit) -> bool) -> bool {
-        self.search::<true, _>(ray, &accept, &mut Silent).is_some()
+        self.search::<true>(ray, &accept).is_some()
     }
 
     /// As [`Tracer::bounds`].
     pub fn bounds(&self) -> Aabb {
-        self.bounds
+        self.boxes.bounds()
     }
 
     /// As [`Tracer::memory_bytes`].
@@ -200,51 +182,25 @@ impl Forest {
         trees
             + self.trees.capacity() * size_of::<Bvh>()
             + self.instances.capacity() * size_of::<Instance>()
-            + self.nodes.capacity() * size_of::<Node<WIDTH>>()
-            + self.leaves.capacity() * size_of::<u32>()
+            + self.boxes.memory_bytes()
     }
 
-    fn search<const ANY: bool, C: Counter>(
-        &self,
-        ray: &Ray,
-        accept: &impl Fn(&Hit) -> bool,
-        counter: &mut C,
-    ) -> Option<Hit> {
-        let slack = self.slack(ray);
-        // A little more than `slack`: the caster rounds what it makes of it.
-        let caster = Caster::new(ray, &self.bounds, self.reach, 1.001 * slack)?;
+    /// A point that was found in an instance's own coordinates may be outside of its box in the world: moving the
+    /// ray there rounds origin and direction to `f32`, and the transform back stretches that by at most its condition
+    /// number.
+    fn search<const ANY: bool>(&self, ray: &Ray, accept: &impl Fn(&Hit) -> bool) -> Option<Hit> {
+        let slack = self.boxes.slack(ray, self.condition as f32);
         let mut search = Search::new(ray.t_min, ray.t_max);
-        let root = match (self.nodes.is_empty(), self.leaves.is_empty()) {
-            (false, _) => ChildRef::node(0),
-            (true, false) => ChildRef::leaf(0, 1), // where there are two there is a node
-            (true, true) => return None,
-        };
-        let mut walk = Walk::new(root, caster.window(search.t_min, search.t_best));
-        while let Some(stop) = self.level.run(Step::<ANY, C> {
-            nodes: &self.nodes,
-            ray: &caster,
-            walk: &mut walk,
-            counter,
-        }) {
-            let index = self.leaves[stop.leaf.index()];
+        self.boxes.visit(ray, slack, |index| {
             let instance = &self.instances[index as usize];
             let accept = |hit: &Hit| instance.confirms(ray, hit.t, slack) && accept(hit);
             let tree = &self.trees[instance.tree as usize];
-            tree.cast::<ANY, C>(&instance.ray(ray), &mut search, index, &accept, counter);
-            if ANY && search.hit.is_some() {
-                break;
-            }
-            caster.narrow(&mut walk.window, search.t_best);
-        }
+            let own = instance.ray(ray);
+            tree.cast::<ANY, _>(&own, &mut search, index, &accept, &mut Silent);
+            let is_done = ANY && search.hit.is_some();
+            (!is_done).then_some(search.t_best)
+        });
         search.hit
-    }
-
-    /// How far a point that was found in an instance's own coordinates may be outside of its
-    /// box in the world. Moving the ray there rounds origin and direction to `f32`, and the
-    /// transform back stretches that by at most its condition number.
-    fn slack(&self, ray: &Ray) -> f32 {
-        let size = ray.origin.abs().max_element() + self.reach;
-        16.0 * UNIT_ROUNDOFF * self.condition as f32 * size
     }
 }
 
@@ -320,45 +276,4 @@ fn condition_number(matrix: &DAffine3, inverse: &DAffine3) -> f64 {
         (x.length_squared() + y.length_squared() + z.length_squared()).sqrt()
     };
     norm(matrix) * norm(inverse)
-}
-
-/// A walk to the next instance, to be compiled for each kind of vectors.
-struct Step<'a, const ANY: bool, C> {
-    nodes: &'a [Node<WIDTH>],
-    ray: &'a Caster,
-    walk: &'a mut Walk,
-    counter: &'a mut C,
-}
-
-impl<const ANY: bool, C: Counter> Job<WIDTH> for Step<'_, ANY, C> {
-    type Output = Option<Stop>;
-
-    #[inline(always)]
-    fn run<S: Lanes<WIDTH>>(self) -> Option<Stop> {
-        let Self {
-            nodes,
-            ray,
-            walk,
-            counter,
-        } = self;
-        walk.next::<S, ANY, WIDTH, _>(nodes, ray, &Instances, counter)
-    }
-}
-
-/// The leaves of the tree over instances: each is worth a look.
-struct Instances;
-
-impl Leaves<WIDTH> for Instances {
-    type Test<S> = ();
-
-    #[inline(always)]
-    fn constants<S: Lanes<WIDTH>>(&self, _: &Caster) {}
-
-    #[inline(always)]
-    fn test<S: Lanes<WIDTH>>(&self, (): &(), _: ChildRef, _: &Window) -> u32 {
-        1
-    }
-
-    #[inline(always)]
-    fn announce(&self, _: ChildRef) {}
 }

@@ -6,6 +6,7 @@
 //! `caster` shows why they never decide wrongly.
 
 mod beam;
+mod boxes;
 mod build;
 mod caster;
 mod count;
@@ -20,6 +21,7 @@ mod traverse;
 mod tree;
 mod triangle;
 
+pub use boxes::BoxTree;
 pub use build::Builder;
 pub use count::TraversalCounts;
 pub use forest::{Forest, Tracer};

@@ -3,6 +3,7 @@
 mod account;
 mod aov;
 mod log;
+mod met;
 mod path;
 mod views;
 mod visibility;

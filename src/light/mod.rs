@@ -161,9 +161,13 @@ impl Light {
         }
     }
 
-    /// A box around what rays from the camera can meet of the light; `None` where that is nothing.
-    pub fn bounds(&self) -> Option<Aabb> {
-        self.is_visible().then(|| self.extent())
+    /// A box around its surface; `None` where it has none, so that no ray can meet it.
+    pub fn surface_bounds(&self) -> Option<Aabb> {
+        let has_surface = match self {
+            Light::Point(_) | Light::Spot(_) | Light::Distant(_) => false,
+            Light::Disk(_) | Light::Rectangle(_) | Light::Sphere(_) => !self.is_delta(),
+        };
+        has_surface.then(|| self.extent())
     }
 
     /// A box around its surface; empty where it has none.
@@ -177,14 +181,9 @@ impl Light {
         Aabb::of_points([center - reach, center + reach])
     }
 
-    /// Where a ray from the camera meets the light itself, and the radiance it sees there.
+    /// Where a ray meets the light's surface, and the radiance it finds there.
     ///
-    /// `None` for lights without a surface, invisible ones, and the back of one-sided ones.
-    pub fn emitted(&self, ray: &Ray) -> Option<(f32, Rgb)> {
-        self.is_visible().then(|| self.met(ray))?
-    }
-
-    /// As [`Self::emitted`], for rays from surfaces: those meet lights that the camera does not see.
+    /// `None` for lights without a surface, and the back of one-sided ones.
     pub fn met(&self, ray: &Ray) -> Option<(f32, Rgb)> {
         match self {
             Light::Disk(light) => light.met(ray),

@@ -103,19 +103,16 @@ impl Light {
         }
     }
 
-    /// A bit for each of `rays` that meets the light ([`Light::emitted`]) before it `ends`.
-    pub fn are_met_by(&self, rays: &RayRow, ends: &Row) -> u64 {
+    /// A bit for each of `rays` that meets the light ([`Light::met`]) before it `ends`.
+    pub fn is_met_by(&self, rays: &RayRow, ends: &Row) -> u64 {
         let all = first_places(rays.count());
-        if !self.is_visible() {
-            return 0;
-        }
         match self {
             Light::Disk(light) if rays.count() >= FEW => {
                 those_where(&widely(Meet { light, rays, ends })) & all
             }
             _ => {
                 let meets = |&i: &usize| {
-                    let met = self.emitted(&rays.get(i));
+                    let met = self.met(&rays.get(i));
                     met.is_some_and(|(t, _)| is_between(t, ends[i]))
                 };
                 places(all).filter(meets).fold(0, |all, i| all | 1 << i)

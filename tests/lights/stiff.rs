@@ -81,7 +81,7 @@ fn the_limit_of_a_vanishing_radius_is_the_hard_light() {
     ] {
         assert!(light.is_delta());
         assert!(light.sample(Vec3::ZERO, Vec2::splat(0.3)).is_none());
-        assert!(light.emitted(&Ray::new(Vec3::ZERO, position)).is_none());
+        assert!(light.met(&Ray::new(Vec3::ZERO, position)).is_none());
     }
 }
 
@@ -161,10 +161,10 @@ fn every_sample_is_finite_however_stiff_the_scene() {
                 assert!(end(&s).is_finite(), "{}", what());
             }
             let ray = Ray::new(point, Vec3::new(0.1, 1.0, -0.2));
-            let emitted = light.emitted(&ray);
+            let met = light.met(&ray);
             assert!(
-                emitted.is_none_or(|(t, _)| t.is_finite() && t > 0.0),
-                "{light:?} {emitted:?}"
+                met.is_none_or(|(t, _)| t.is_finite() && t > 0.0),
+                "{light:?} {met:?}"
             );
         }
     }

@@ -13,13 +13,14 @@ mod weighing;
 
 use crate::bvh::Hit;
 use crate::color::Rgb;
-use crate::light::{Light, Receiver};
+use crate::light::Receiver;
 use crate::material::BsdfSample;
 use crate::math::{ROW, Ray};
 use crate::prepare::{PreparedScene, Surface};
 use crate::sampling::Sampler;
 use crate::scene::Settings;
 
+use super::met::LightSurfaces;
 use super::{CameraRow, Integrator, RayKind, RayLog, light_samples};
 use lights::{Lights, Place};
 use shadow::is_pane;
@@ -41,7 +42,7 @@ pub struct PathTracer<'a> {
     /// Per light of the scene: samples at a surface that the camera sees.
     samples: Vec<u32>,
     /// Lights of the scene that have a surface, which rays can meet.
-    surfaces: Vec<u32>,
+    surfaces: LightSurfaces<'a>,
     can_meet_light: bool,
     weighing: Weighing,
     /// Whether the camera sees nothing where it sees the background.
@@ -53,10 +54,9 @@ impl<'a> PathTracer<'a> {
     pub fn new(scene: &'a PreparedScene<'a>, settings: &Settings) -> Self {
         let pattern = settings.sampling.pattern;
         let lights = Lights::of(scene);
-        let has_surface = |light: &u32| match &scene.lights[*light as usize] {
-            Light::Point(_) | Light::Spot(_) | Light::Distant(_) => false,
-            light => !light.is_delta() && !light.is_black(),
-        };
+        let shining = (scene.shining.iter())
+            .map(|&number| (number, &scene.lights[number as usize]))
+            .filter(|(_, light)| !light.is_black());
         Self {
             scene,
             max_depth: settings.depth(),
@@ -65,7 +65,7 @@ impl<'a> PathTracer<'a> {
             samples: (scene.lights.iter())
                 .map(|light| light_samples(light, settings.light_samples, pattern))
                 .collect(),
-            surfaces: scene.shining.iter().copied().filter(has_surface).collect(),
+            surfaces: LightSurfaces::new(shining),
             can_meet_light: lights.can_be_met(),
             lights,
             weighing: Weighing::default(),

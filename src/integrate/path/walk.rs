@@ -6,6 +6,7 @@ use super::PathTracer;
 use super::lights::Place;
 use crate::bvh::Hit;
 use crate::color::Rgb;
+use crate::integrate::met::nearest_visible;
 use crate::integrate::{RayKind, RayLog, RayRecord, Sight, Source};
 use crate::math::{Ray, UnitVec3};
 use crate::prepare::{Surface, TriangleId};
@@ -181,26 +182,23 @@ impl<'a> PathTracer<'a> {
     ) -> Option<f32> {
         let start = walk.passed.map_or(0.0, |h| h.t);
         let end = hit.map_or(walk.ray.t_max, |h| h.t);
-        let met = self.surfaces.iter().filter_map(|&number| {
-            let light = &self.scene.lights[number as usize];
-            let (t, radiance) = light.met(&walk.ray)?;
-            (t > start && t < end).then_some((number, light.is_visible(), t, radiance))
-        });
+        let met = self.surfaces.between(&walk.ray, start, end);
         if let Some(departure) = &walk.departure {
-            for (number, _, t, radiance) in met {
-                let weight = self.weight(departure, number, &walk.ray);
-                add(number, radiance * weight * self.through_body(walk, t));
+            for light in &met {
+                let weight = self.weight(departure, light.number, &walk.ray);
+                let through = self.through_body(walk, light.t);
+                add(light.number, light.radiance * weight * through);
             }
             return None;
         }
-        let last = (met.clone())
-            .filter(|(_, is_visible, ..)| *is_visible)
-            .min_by(|(_, _, a, _), (_, _, b, _)| a.total_cmp(b));
-        let last = last.map(|(_, _, t, _)| t);
+        let last = nearest_visible(&met).map(|light| light.t);
         let end = last.unwrap_or(f32::INFINITY);
-        for (number, is_visible, t, radiance) in met {
-            if t == end && is_visible || walk.scattered > 0 && !is_visible && t < end {
-                add(number, radiance * self.through_body(walk, t));
+        for light in &met {
+            let is_seen = light.t == end && light.is_visible;
+            let is_unseen_before = walk.scattered > 0 && !light.is_visible && light.t < end;
+            if is_seen || is_unseen_before {
+                let through = self.through_body(walk, light.t);
+                add(light.number, light.radiance * through);
             }
         }
         last

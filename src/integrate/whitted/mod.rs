@@ -3,13 +3,14 @@
 
 mod plain;
 
+use super::met::{LightSurfaces, nearest_visible};
 use super::visibility::{straight_through, transmittance};
 use super::way::way;
 use super::{CameraRow, Integrator, RayKind, RayLog, RayRecord, Sight, Source, light_samples};
 use crate::bvh::Hit;
 use crate::color::Rgb;
 use crate::interaction::Interaction;
-use crate::light::{Light, LightSample};
+use crate::light::LightSample;
 use crate::material::{Bsdf, View, reflect, refract};
 use crate::math::{ROW, Ray, RayRow, first_places, places};
 use crate::prepare::{PlainRow, PreparedScene, Surface};
@@ -29,8 +30,8 @@ pub struct Whitted<'a> {
     smooths_shadows: bool,
     /// Per light: shadow rays per shading point.
     samples: Vec<u32>,
-    /// Lights that rays can meet, with their numbers.
-    visible: Vec<(u32, &'a Light)>,
+    /// Lights that rays can meet: those that the camera sees.
+    visible: LightSurfaces<'a>,
     /// Whether the camera sees nothing where it sees the background.
     is_transparent: bool,
 }
@@ -68,14 +69,6 @@ impl Pending {
             weight: self.weight,
         }
     }
-}
-
-/// A light whose surface a ray meets.
-struct MetLight {
-    number: u32,
-    /// Where along the ray.
-    t: f32,
-    radiance: Rgb,
 }
 
 /// Shadow rays that wait at most until they are traced together.
@@ -150,10 +143,11 @@ impl<'a> Whitted<'a> {
             max_depth: settings.depth(),
             smooths_shadows: settings.shadow_terminator,
             samples: scene.lights.iter().map(samples).collect(),
-            visible: (0..)
-                .zip(&scene.lights)
-                .filter(|(_, light)| light.is_visible())
-                .collect(),
+            visible: LightSurfaces::new(
+                (0..)
+                    .zip(&scene.lights)
+                    .filter(|(_, light)| light.is_visible()),
+            ),
             is_transparent: settings.transparent,
         }
     }
@@ -178,7 +172,9 @@ impl<'a> Whitted<'a> {
         let mut next = first;
         let mut passed = 0.0;
         loop {
-            if let Some(met) = self.light_between(&from.ray, passed, next.as_ref()) {
+            let end = next.map_or(from.ray.t_max, |hit| hit.t);
+            let met = self.visible.between(&from.ray, passed, end);
+            if let Some(met) = nearest_visible(&met) {
                 if is_camera {
                     log.see(Sight::Light { t: met.t }, clear);
                 }
@@ -215,24 +211,6 @@ impl<'a> Whitted<'a> {
             passed = hit.t;
             next = self.scene.closest_hit(&from.ray, Some(&hit));
         }
-    }
-
-    /// The nearest light whose surface `ray` meets beyond `passed` and before `hit`.
-    fn light_between(&self, ray: &Ray, passed: f32, hit: Option<&Hit>) -> Option<MetLight> {
-        let end = hit.map_or(ray.t_max, |h| h.t);
-        let meet = |&(number, light): &(u32, &Light)| {
-            let (t, radiance) = light.emitted(ray)?;
-            Some(MetLight {
-                number,
-                t,
-                radiance,
-            })
-        };
-        self.visible
-            .iter()
-            .filter_map(meet)
-            .filter(|met| met.t > passed && met.t < end)
-            .min_by(|a, b| a.t.total_cmp(&b.t))
     }
 
     /// Emitted and ambient light that leaves `surface` to the viewer; the direct light waits for shadow rays.

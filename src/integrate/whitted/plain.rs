@@ -7,7 +7,7 @@ use crate::bvh::HitRow;
 use crate::color::Rgb;
 use crate::integrate::way::way_in_front;
 use crate::integrate::{CameraRow, RayKind, RayLog, Sight, Source};
-use crate::light::{Light, LightSampleRow};
+use crate::light::LightSampleRow;
 use crate::math::{
     FEW, ROW, RayRow, Row, RowJob, Vec2, Vec3, VectorRow, places, those_where, widely,
 };
@@ -77,8 +77,7 @@ impl Whitted<'_> {
     /// Adds those of `samples` whose first hits are on plain surfaces and before all lights to `surfaces`, which has none.
     pub(super) fn see_plain(&self, samples: &CameraRow, hits: &HitRow, surfaces: &mut PlainRow) {
         let rays = &samples.rays;
-        let met = |(_, light): &(u32, &Light)| light.are_met_by(rays, &hits.t);
-        let met = self.visible.iter().map(met).fold(0, |all, met| all | met);
+        let met = self.visible.are_met_by(rays, &hits.t);
         let is_lit = self.max_depth > 0;
         let of = if is_lit { hits.is_hit & !met } else { 0 };
         let is_bulging = self.smooths_shadows;

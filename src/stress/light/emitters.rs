@@ -146,7 +146,7 @@ fn by_paths(what: &str, lights: &[(Light, f64)], effort: Effort) -> Check {
         ..paths(Pattern::Random)
     };
     let worst = lights.iter().map(|(light, exact)| {
-        let size = light.bounds().map_or(1.0, |bounds| {
+        let size = light.surface_bounds().map_or(1.0, |bounds| {
             let reach = bounds.min.abs().max(bounds.max.abs());
             reach.max_element()
         });
@@ -181,7 +181,9 @@ fn lowest(light: &Light) -> f32 {
         let ring = (1.0 - height * height).sqrt();
         seen(Vec3::new(ring * angle.cos(), height, ring * angle.sin()))
     });
-    let center = light.bounds().map_or(Vec3::Y, |bounds| bounds.center());
+    let center = light
+        .surface_bounds()
+        .map_or(Vec3::Y, |bounds| bounds.center());
     nearest.fold(center.length(), f32::min)
 }
 
