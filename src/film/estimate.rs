@@ -135,7 +135,7 @@ pub struct ErrorSums {
 
 impl ErrorSums {
     /// Of these pixels; `None` where one has samples in one half only.
-    pub fn of(pixels: &[Pixel]) -> Option<Self> {
+    pub fn of<'p>(pixels: impl IntoIterator<Item = &'p Pixel>) -> Option<Self> {
         let mut sums = Self::default();
         for pixel in pixels {
             sums.add(pixel.relative_squared_error()?);

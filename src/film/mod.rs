@@ -51,6 +51,11 @@ impl Rect {
         UVec2::new(self.width, self.height)
     }
 
+    /// The number of the pixel at `place`, row by row.
+    pub fn index(&self, place: UVec2) -> usize {
+        (place.y - self.y) as usize * self.width as usize + (place.x - self.x) as usize
+    }
+
     /// Its pixels, row by row.
     pub fn pixels(self) -> impl Iterator<Item = UVec2> {
         (self.y..self.y + self.height)

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 
 use super::difficulty::Difficulty;
 use super::tile::Tile;
-use crate::film::Rect;
+use crate::film::{Pixel, Rect};
 use crate::sampling::Pattern;
 
 /// As many pixels of the whole film stand beside those of a tile.
@@ -30,7 +30,7 @@ const MOST: u32 = 1 << 28;
 /// Scores are kept as whole numbers of this part of an octave, so that halves alike can be counted together.
 const STEPS_PER_OCTAVE: f64 = 16.0;
 /// Weights below this are as good as 0.
-const LEAST_WEIGHT: f64 = 1e-30;
+const LEAST_WEIGHT: f32 = 1e-30;
 
 /// One half of a pixel.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -58,9 +58,19 @@ impl Scores {
             powers: (least..=most).map(power).collect(),
         }
     }
+}
 
-    fn of_share(&self, share: Share) -> f64 {
-        self.powers[usize::from(share.score.abs_diff(self.least))]
+/// How many samples a half of each score is to have.
+struct Counts {
+    least_score: i16,
+    by_score: Vec<u32>,
+}
+
+impl Counts {
+    /// What a half is to have with those that it has.
+    fn of(&self, share: Share) -> u32 {
+        let wanted = self.by_score[usize::from(share.score.abs_diff(self.least_score))];
+        wanted.max(share.taken)
     }
 }
 
@@ -89,7 +99,7 @@ type Classes = Vec<(Share, Class)>;
 struct Allotted {
     shares: Vec<Share>,
     /// See [`Class::weight`].
-    weights: Vec<f64>,
+    weights: Vec<f32>,
     /// See [`Class::cost`].
     cost: f64,
 }
@@ -100,11 +110,11 @@ const PARTS: usize = 16;
 impl Allotted {
     /// Each of its halves as a class of its own.
     fn halves(&self) -> impl Iterator<Item = (Share, Class)> {
-        let class = |(share, weight): (&Share, &f64)| {
+        let class = |(share, weight): (&Share, &f32)| {
             let class = Class {
                 count: 1,
                 cost: self.cost,
-                weight: *weight,
+                weight: f64::from(*weight),
             };
             (*share, class)
         };
@@ -178,13 +188,20 @@ pub(super) struct Outcome {
 }
 
 impl Allotment {
-    /// Looks at the samples of all `tiles` of `film`; each half of each pixel has some. Squared errors fall with this
-    /// power of the number of samples.
-    pub fn new(film: Rect, tiles: &[Tile], pattern: Pattern, unit: u32, exponent: f64) -> Self {
-        let difficulty = Difficulty::of(film, tiles);
+    /// Looks at all `pixels` of `film`, which is cut into `tiles`; each half of each pixel has samples. Squared errors
+    /// fall with this power of the number of samples.
+    pub fn new(
+        film: Rect,
+        pixels: &[Pixel],
+        tiles: &[Tile],
+        pattern: Pattern,
+        unit: u32,
+        exponent: f64,
+    ) -> Self {
+        let difficulty = Difficulty::of(film, pixels);
         let measured: Vec<_> = tiles
             .par_iter()
-            .map(|tile| Measured::of(tile, &difficulty, exponent))
+            .map(|tile| Measured::of(film, pixels, tile, &difficulty, exponent))
             .collect();
         let film_factor = {
             let sum = |f: fn(&Measured) -> f64| measured.iter().map(f).sum::<f64>();
@@ -245,12 +262,13 @@ impl Allotment {
     /// Sets the goals of all tiles.
     pub fn aim(&self, tiles: &mut [Tile], scale: f64) {
         let least = self.least(self.outcome(scale, 0).samples);
+        let counts = self.counts(scale, least);
         tiles
             .par_iter_mut()
             .zip(&self.shares)
             .for_each(|(tile, shares)| {
                 for (goal, shares) in tile.goal.iter_mut().zip(shares.chunks_exact(2)) {
-                    *goal = [0, 1].map(|half| self.count(shares[half], scale, least));
+                    *goal = [0, 1].map(|half| counts.of(shares[half]));
                 }
             });
     }
@@ -261,10 +279,13 @@ impl Allotment {
         self.rounded(LEAST_SHARE * mean)
     }
 
-    fn count(&self, share: Share, scale: f64, least: u32) -> u32 {
-        self.rounded(scale * self.scores.of_share(share))
-            .max(least)
-            .max(share.taken)
+    /// `scale` times the scores, but `least` at least.
+    fn counts(&self, scale: f64, least: u32) -> Counts {
+        let count = |power: &f64| self.rounded(scale * power).max(least);
+        Counts {
+            least_score: self.scores.least,
+            by_score: self.scores.powers.iter().map(count).collect(),
+        }
     }
 
     /// The number of samples near `x` that the pattern does well with.
@@ -286,8 +307,9 @@ impl Allotment {
     fn outcome(&self, scale: f64, least: u32) -> Outcome {
         let mut sum = Outcome::default();
         let mut fall = Fall::new(self.exponent);
+        let counts = self.counts(scale, least);
         for &(share, class) in &self.classes {
-            let count = self.count(share, scale, least);
+            let count = counts.of(share);
             sum.samples += class.count * u64::from(count);
             sum.rays += class.cost * f64::from(count);
             sum.error += class.weight * fall.to(count);
@@ -310,19 +332,25 @@ struct Measured<'a> {
 }
 
 impl<'a> Measured<'a> {
-    fn of(tile: &'a Tile, difficulty: &Difficulty, exponent: f64) -> Self {
+    fn of(
+        film: Rect,
+        pixels: &[Pixel],
+        tile: &'a Tile,
+        difficulty: &Difficulty,
+        exponent: f64,
+    ) -> Self {
         let (mut error, mut model, mut squares) = (0.0, 0.0, 0.0);
-        let mut of_tile = Vec::with_capacity(tile.pixels.len());
+        let mut of_tile = Vec::with_capacity(tile.taken.len());
         let mut fall = Fall::new(exponent);
-        for (i, place) in tile.rect().pixels().enumerate() {
-            let taken = tile.taken[i];
-            let of = difficulty.for_halves(place.x, place.y, taken);
+        for (place, &taken) in tile.rect().pixels().zip(&tile.taken) {
+            let i = film.index(place);
+            let of = difficulty.for_halves(i, taken);
             let expected: f64 = of
                 .iter()
                 .zip(taken)
                 .map(|(&d, n)| 0.25 * f64::from(d) * fall.to(n.max(1)))
                 .sum();
-            error += tile.pixels[i].relative_squared_error().unwrap_or(0.0);
+            error += pixels[i].relative_squared_error().unwrap_or(0.0);
             model += expected;
             squares += expected * expected;
             of_tile.push(of);
@@ -356,15 +384,15 @@ impl<'a> Measured<'a> {
                 .sum::<f64>()
         };
         let cost = (self.tile.rays.total() as f64 / taken(self.tile).max(1.0)).max(1.0);
-        let power = 1.0 / (1.0 + exponent);
+        let power = STEPS_PER_OCTAVE as f32 / (1.0 + exponent as f32);
+        let weigh = |d: f32| (0.25 * factor * f64::from(d)).min(f32::MAX.into()) as f32;
         let mut shares = Vec::with_capacity(2 * self.difficulty.len());
         let mut weights = Vec::with_capacity(2 * self.difficulty.len());
         for (taken, difficulty) in self.tile.taken.iter().zip(&self.difficulty) {
             for half in 0..2 {
-                let weight = 0.25 * factor * f64::from(difficulty[half]);
-                let score = (weight.max(LEAST_WEIGHT) / cost).log2() * power;
+                let weight = weigh(difficulty[half]);
                 shares.push(Share {
-                    score: nearest(STEPS_PER_OCTAVE * score),
+                    score: nearest((weight.max(LEAST_WEIGHT) / cost as f32).log2() * power),
                     taken: taken[half],
                 });
                 weights.push(weight);
@@ -379,8 +407,8 @@ impl<'a> Measured<'a> {
 }
 
 /// The whole number nearest to `x`, without the call that `round` is.
-fn nearest(x: f64) -> i16 {
-    const OFF: f64 = 16384.0;
+fn nearest(x: f32) -> i16 {
+    const OFF: f32 = 16384.0;
     ((x.clamp(-OFF, OFF) + (OFF + 0.5)) as i32 - OFF as i32) as i16
 }
 

@@ -3,7 +3,7 @@
 use super::Job;
 use super::allot::{Allotment, Outcome};
 use super::tile::{Halves, Tile};
-use crate::film::RayCounts;
+use crate::film::{Pixel, RayCounts};
 use crate::sampling::Pattern;
 
 /// A way to spend more samples, from what there is now.
@@ -39,12 +39,18 @@ pub(super) struct Uniform {
 const MOST: u64 = 1 << 31;
 
 impl Course {
-    /// The course of a render that has come to `tiles`, whose squared error falls with the power `exponent` of the
+    /// The course of a render that has come to these `pixels` in `tiles`, whose squared error falls with the power `exponent` of the
     /// number of samples; where it `is_adaptive`, each half of each pixel has samples.
-    pub fn of(job: &Job, tiles: &[Tile], is_adaptive: bool, exponent: f64) -> Self {
+    pub fn of(
+        job: &Job,
+        pixels: &[Pixel],
+        tiles: &[Tile],
+        is_adaptive: bool,
+        exponent: f64,
+    ) -> Self {
         let pattern = job.settings.sampling.pattern;
         if is_adaptive {
-            let allotment = Allotment::new(job.crop, tiles, pattern, round(job), exponent);
+            let allotment = Allotment::new(job.crop, pixels, tiles, pattern, round(job), exponent);
             return Self::Adaptive(allotment);
         }
         let mut rays = RayCounts::default();

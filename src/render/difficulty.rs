@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::tile::{Halves, TILE, Tile};
+use super::tile::Halves;
 use crate::film::{Moments, Pixel, Rect, relative_weights};
 
 /// What a half has seen in its pixel counts like this many samples less than the neighbours' mean.
@@ -10,40 +10,16 @@ const NEIGHBOURHOOD: f32 = 4.0;
 
 /// How varied the samples of each half of each pixel are, over what the metric divides by.
 pub(super) struct Difficulty {
-    film: Rect,
     /// By pixel, row by row, as all that follow.
     halves: Vec<[f32; 2]>,
     /// The mean over both halves of the pixels around.
     around: Vec<f32>,
 }
 
-/// What a half of a pixel has seen.
-#[derive(Clone, Copy, Default)]
-struct Seen {
-    mean: [f32; 3],
-    /// What the metric multiplies squares by, the mean of the channels.
-    weights: f32,
-    /// The variance of its samples in units of the metric, summed over the channels; `None` where there is but one.
-    variation: Option<f32>,
-}
-
 impl Difficulty {
-    /// Of the pixels of `tiles`, which come row by row and fill `film`.
-    pub fn of(film: Rect, tiles: &[Tile]) -> Self {
-        let mut seen = vec![[Seen::default(); 2]; film.area() as usize];
-        let width = film.width as usize;
-        let bands = seen.par_chunks_mut((width * TILE as usize).max(1));
-        let rows = tiles.par_chunks((film.width.div_ceil(TILE) as usize).max(1));
-        bands.zip(rows).for_each(|(band, tiles)| {
-            for tile in tiles {
-                let first = tile.rect();
-                for (pixel, place) in tile.pixels.iter().zip(first.pixels()) {
-                    let (x, y) = (place.x - film.x, place.y - first.y);
-                    band[y as usize * width + x as usize] = Seen::of(pixel);
-                }
-            }
-        });
-        let halves = variations(film, &seen);
+    /// Of the `pixels` that fill `film`.
+    pub fn of(film: Rect, pixels: &[Pixel]) -> Self {
+        let halves = variations(film, pixels);
         let both = |i: usize| halves[i][0] + halves[i][1];
         let around = by_nine(
             film,
@@ -57,17 +33,11 @@ impl Difficulty {
                 }
             },
         );
-        Self {
-            film,
-            around,
-            halves,
-        }
+        Self { around, halves }
     }
 
-    /// For each half of the pixel in column `x` and row `y` of the film: what the other half, which has `taken`
-    /// samples, and the pixels around say.
-    pub fn for_halves(&self, x: u32, y: u32, taken: Halves) -> [f32; 2] {
-        let i = ((y - self.film.y) * self.film.width + x - self.film.x) as usize;
+    /// For each half of pixel `i`: what the other half, which has `taken` samples, and the pixels around say.
+    pub fn for_halves(&self, i: usize, taken: Halves) -> [f32; 2] {
         let (own, around) = (self.halves[i], self.around[i]);
         [1, 0].map(|other: usize| {
             let count = taken[other] as f32;
@@ -76,33 +46,28 @@ impl Difficulty {
     }
 }
 
-impl Seen {
-    fn of(pixel: &Pixel) -> [Self; 2] {
-        let of = |half: &Moments| {
-            let weights = relative_weights(half.mean());
-            let variance = half.sample_variance();
-            let weighted = variance.iter().zip(weights).map(|(v, w)| v * w);
-            Self {
-                mean: half.mean().map(|c| c as f32),
-                weights: (weights.iter().sum::<f64>() / 3.0) as f32,
-                variation: (half.count() > 1).then(|| weighted.sum::<f64>() as f32),
-            }
-        };
-        [of(&pixel.halves()[0]), of(&pixel.halves()[1])]
-    }
+/// The variance of the samples of a half in units of the metric, summed over the channels; `None` where there is but one.
+fn variation(half: &Moments) -> Option<f32> {
+    let weights = relative_weights(half.mean());
+    let weighted = half.sample_variance().into_iter().zip(weights);
+    (half.count() > 1).then(|| weighted.map(|(v, w)| v * w).sum::<f64>() as f32)
 }
 
 /// How varied the samples of each half are; where it has but one, those of the pixels around.
-fn variations(film: Rect, seen: &[[Seen; 2]]) -> Vec<[f32; 2]> {
-    let is_known = |halves: &[Seen; 2]| halves.iter().all(|half| half.variation.is_some());
-    if seen.par_iter().all(is_known) {
-        let known =
-            |halves: &[Seen; 2]| halves.each_ref().map(|half| half.variation.unwrap_or(0.0));
-        return seen.par_iter().map(known).collect();
+fn variations(film: Rect, pixels: &[Pixel]) -> Vec<[f32; 2]> {
+    let is_known = |pixel: &Pixel| pixel.halves().iter().all(|half| half.count() > 1);
+    if pixels.par_iter().all(is_known) {
+        let known = |pixel: &Pixel| {
+            pixel
+                .halves()
+                .each_ref()
+                .map(|h| variation(h).unwrap_or(0.0))
+        };
+        return pixels.par_iter().map(known).collect();
     }
     let moments = |i: usize| {
-        let [a, b] = seen[i].each_ref().map(|half| {
-            let [r, g, b] = half.mean;
+        let [a, b] = pixels[i].halves().each_ref().map(|half| {
+            let [r, g, b] = half.mean().map(|c| c as f32);
             [r, g, b, r * r + g * g + b * b]
         });
         [a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3]]
@@ -112,8 +77,9 @@ fn variations(film: Rect, seen: &[[Seen; 2]]) -> Vec<[f32; 2]> {
             let [r, g, b, squares] = [0, 1, 2, 3].map(|k| sums[4 * half + k]);
             let of_means = (r * r + g * g + b * b) / count;
             let spread = ((squares - of_means) / f32::max(count - 1.0, 1.0)).max(0.0);
-            let half = &seen[i][half];
-            half.variation.unwrap_or(half.weights * spread)
+            let half = &pixels[i].halves()[half];
+            let weights = || relative_weights(half.mean()).iter().sum::<f64>() / 3.0;
+            variation(half).unwrap_or_else(|| weights() as f32 * spread)
         })
     })
 }

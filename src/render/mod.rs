@@ -34,7 +34,7 @@ use course::{Course, Step, aim_all, dealt, round};
 use decay::Decay;
 use forecast::{Bounds, Pace};
 use stop::Stop;
-use tile::{Halves, Tile, assemble, error_of, tiles};
+use tile::{Halves, Tile, assemble, error_of, pixels, rows, tiles};
 
 /// Samples of each half of each pixel before an error is believed and samples are allotted.
 const FIRST_SAMPLES: u32 = 1;
@@ -74,10 +74,10 @@ pub struct Job<'a> {
 }
 
 impl Job<'_> {
-    /// The most memory that [`render`] takes for the film, bytes: tiles and film are there
-    /// together while they are put together.
+    /// The most memory that [`render`] takes for the film, bytes: the layers of tiles and film are there together while
+    /// they are put together.
     pub fn memory_bytes(&self) -> u64 {
-        let pixel = 2 * size_of::<Pixel>() + 2 * size_of::<Halves>() + ALLOTMENT_BYTES;
+        let pixel = size_of::<Pixel>() + 2 * size_of::<Halves>() + ALLOTMENT_BYTES;
         let layer = size_of::<[[f64; 2]; 3]>() + size_of::<[f32; 3]>();
         let objects = match self.layers.contains(&Aov::Objects) {
             true => OBJECT_BYTES,
@@ -174,13 +174,14 @@ pub fn render_within(
         observe,
         pace: Pace::start(),
         decay: Decay::of(job.settings.sampling.pattern, job.settings.integrator),
+        pixels: pixels(job),
         tiles: tiles(job),
         done: AtomicU64::new(0),
         total: AtomicU64::new(job.crop.area() * u64::from(limits.samples)),
         has_forecast: false,
     };
     let stopped_by = run.finish();
-    assemble(job, &run.tiles, stopped_by)
+    assemble(job, run.pixels, &run.tiles, stopped_by)
 }
 
 /// A render at work.
@@ -193,6 +194,8 @@ struct Run<'a> {
     observe: &'a (dyn Fn(Event) + Sync),
     pace: Pace,
     decay: Decay,
+    /// Row by row.
+    pixels: Vec<Pixel>,
     tiles: Vec<Tile>,
     done: AtomicU64,
     /// Samples in all, as far as is known.
@@ -250,7 +253,8 @@ impl Run<'_> {
             let Kept { course, since, now } =
                 kept.take().filter(|_| !is_new).unwrap_or_else(|| {
                     let exponent = self.decay.exponent();
-                    Kept::new(Course::of(self.job, &self.tiles, is_adaptive, exponent))
+                    let (pixels, tiles) = (&self.pixels, &self.tiles);
+                    Kept::new(Course::of(self.job, pixels, tiles, is_adaptive, exponent))
                 });
             let Some(step) = self.next_step(&course, now, error) else {
                 return StoppedBy::Samples;
@@ -316,8 +320,10 @@ impl Run<'_> {
         let (job, integrator, observe) = (self.job, self.integrator.as_ref(), self.observe);
         let account = self.account.as_ref();
         let (done, total) = (&self.done, self.total.load(Ordering::Relaxed));
-        self.tiles.par_iter_mut().for_each(|tile| {
-            let taken = tile.render(job, integrator, account, &stop);
+        let rows = rows(job.crop, &mut self.pixels);
+        let tiles = self.tiles.par_iter_mut().zip(rows);
+        tiles.for_each(|(tile, pixels)| {
+            let taken = tile.render(pixels, job, integrator, account, &stop);
             let done = done.fetch_add(taken, Ordering::Relaxed) + taken;
             let total = total.max(done);
             observe(Event::Progress(Progress { done, total }));

@@ -23,9 +23,12 @@ pub(super) type Halves = [u32; 2];
 /// Per pixel the instances that were seen, and the sums of their shares over the samples of each half.
 type Objects = Vec<Vec<(u32, [f64; 2])>>;
 
+/// The pixels of a tile: its part of each of its rows.
+pub(super) type Rows<'a> = Vec<&'a mut [Pixel]>;
+
+/// What of a tile is not in its pixels; by pixel, row by row.
 pub(super) struct Tile {
     rect: Rect,
-    pub pixels: Vec<Pixel>,
     /// Samples that were traced, rejected ones included: where each half goes on.
     pub taken: Vec<Halves>,
     /// How many there are to be.
@@ -46,7 +49,6 @@ impl Tile {
         let area = rect.area() as usize;
         Self {
             rect,
-            pixels: vec![Pixel::default(); area],
             taken: vec![[0; 2]; area],
             goal: vec![[0; 2]; area],
             layers: vec![vec![[[0.0; 2]; 3]; area]; layers.len()],
@@ -67,11 +69,12 @@ impl Tile {
         self.rect
     }
 
-    /// Takes the samples that its pixels lack, until `stop`; returns how many.
+    /// Takes the samples that its `pixels` lack, until `stop`; returns how many.
     ///
     /// The samples of a half are added in the order of their indices.
     pub fn render(
         &mut self,
+        mut pixels: Rows,
         job: &Job,
         integrator: &dyn Integrator,
         account: Option<&Account>,
@@ -101,15 +104,15 @@ impl Tile {
                     done += 1;
                     batch.add(Place { i, half, pixel }, &first.at(number));
                     if batch.count() == BATCH {
-                        self.take(job, &mut batch);
+                        self.take(&mut pixels, job, &mut batch);
                     }
                 }
             }
         }
-        self.take(job, &mut batch);
+        self.take(&mut pixels, job, &mut batch);
         self.rays.add(&batch.log.counts);
         self.cut_off.add(&batch.log.cut_off);
-        self.error = ErrorSums::of(&self.pixels);
+        self.error = ErrorSums::of(pixels.iter().flat_map(|row| row.iter()));
         done
     }
 
@@ -126,7 +129,7 @@ impl Tile {
     }
 
     /// Takes the samples of `batch`, and empties it.
-    fn take(&mut self, job: &Job, batch: &mut Batch) {
+    fn take(&mut self, pixels: &mut Rows, job: &Job, batch: &mut Batch) {
         let count = batch.count();
         if count == 0 {
             return;
@@ -138,7 +141,9 @@ impl Tile {
             let numbers = end..end + run.len();
             end = numbers.end;
             self.taken[i][half] += run.len() as u32;
-            let are_added = self.pixels[i].add_samples(half, &batch.radiances[numbers.clone()]);
+            let row = &mut pixels[(pixel.y - self.rect.y) as usize];
+            let at = &mut row[(pixel.x - self.rect.x) as usize];
+            let are_added = at.add_samples(half, &batch.radiances[numbers.clone()]);
             if are_added && batch.log.accounts.is_empty() {
                 continue;
             }
@@ -291,6 +296,12 @@ fn lens_position(job: &Job, sampler: &Sampler) -> Vec2 {
     }
 }
 
+/// The pixels of the job's part of the film, row by row, without samples.
+pub(super) fn pixels(job: &Job) -> Vec<Pixel> {
+    let all = 0..job.crop.area() as usize;
+    all.into_par_iter().map(|_| Pixel::default()).collect()
+}
+
 /// The tiles of the job's part of the film, row by row.
 pub(super) fn tiles(job: &Job) -> Vec<Tile> {
     let crop = job.crop;
@@ -320,19 +331,36 @@ pub(super) fn error_of(tiles: &[Tile]) -> Option<ErrorSums> {
     Some(sums)
 }
 
-/// Puts the tiles together.
-pub(super) fn assemble(job: &Job, tiles: &[Tile], stopped_by: StoppedBy) -> Film {
+/// The pixels of each of the [`tiles`] of `film`.
+pub(super) fn rows(film: Rect, pixels: &mut [Pixel]) -> Vec<Rows<'_>> {
+    let width = (film.width as usize).max(1);
+    let bands = pixels.chunks_mut(TILE as usize * width);
+    let tiles = bands.flat_map(|band| {
+        let mut tiles = Vec::new();
+        for row in band.chunks_mut(width) {
+            let parts = row.chunks_mut(TILE as usize);
+            tiles.resize_with(parts.len(), Rows::new);
+            for (tile, part) in tiles.iter_mut().zip(parts) {
+                tile.push(part);
+            }
+        }
+        tiles
+    });
+    tiles.collect()
+}
+
+/// Puts pixels and tiles together.
+pub(super) fn assemble(
+    job: &Job,
+    pixels: Vec<Pixel>,
+    tiles: &[Tile],
+    stopped_by: StoppedBy,
+) -> Film {
     let crop = job.crop;
-    let area = crop.area() as usize;
-    let columns = crop.width.div_ceil(TILE);
-    let pixel = |i: u32| {
-        let (x, y) = (i % crop.width, i / crop.width);
-        let tile = &tiles[(y / TILE * columns + x / TILE) as usize];
-        tile.pixels[(y % TILE * tile.rect.width + x % TILE) as usize]
-    };
+    let area = pixels.len();
     let mut film = Film {
         rect: crop,
-        pixels: (0..area as u32).into_par_iter().map(pixel).collect(),
+        pixels,
         layers: vec![vec![[0.0; 3]; area]; job.layers.len()],
         objects: match job.layers.contains(&Aov::Objects) {
             true => vec![Vec::new(); area],
@@ -345,12 +373,10 @@ pub(super) fn assemble(job: &Job, tiles: &[Tile], stopped_by: StoppedBy) -> Film
         stopped_by,
     };
     for tile in tiles {
-        let place = |x: u32, y: u32| ((y - crop.y) * crop.width + x - crop.x) as usize;
-        let rect = tile.rect;
         let has_more = !(film.layers.is_empty() && tile.objects.is_empty());
-        for (i, at) in rect.pixels().enumerate().filter(|_| has_more) {
-            let to = place(at.x, at.y);
-            let pixel = &tile.pixels[i];
+        for (i, at) in tile.rect.pixels().enumerate().filter(|_| has_more) {
+            let to = crop.index(at);
+            let pixel = &film.pixels[to];
             let mean = |sums: [f64; 2]| pixel.mean_of_sums(sums) as f32;
             for (layer, from) in film.layers.iter_mut().zip(&tile.layers) {
                 layer[to] = from[i].map(mean);
