@@ -24,7 +24,7 @@
 //! (`unit_of_direction`).
 
 use super::triangle::ExactRay;
-use crate::math::{Aabb, Ray, UNIT_ROUNDOFF};
+use crate::math::{Aabb, Ray, UNIT_ROUNDOFF, larger};
 
 /// How much larger reciprocal directions are for far planes; 1 + 16u.
 const FAR_PAD: f32 = 1.0 + 16.0 * UNIT_ROUNDOFF;
@@ -41,6 +41,9 @@ const TINY: f32 = 64.0 * f32::MIN_POSITIVE;
 
 /// Components of the direction are raised to this share of the largest.
 const LEAST_SLOPE: f32 = 1.0 / (1u64 << 40) as f32;
+
+/// Parameters below this are rounded to few digits: what the exact test will make of them is not certain.
+const LEAST_CERTAIN: f32 = 1.0 / (1u128 << 100) as f32;
 
 /// Lengths of directions and magnitudes of coordinates whose products cannot overflow: slopes
 /// are 2^-40 at least, so that reciprocals are at most 2^70 and products at most 2^121.
@@ -69,6 +72,7 @@ pub(super) struct Caster {
     direction: [f32; 3],
     /// Box distances are `t * to_distance`; see [`unit_of_direction`].
     to_distance: f64,
+    is_ordinary: bool,
 }
 
 /// A range of `t`, widened, in the units of box distances and of depth
@@ -136,7 +140,18 @@ impl Caster {
             ],
             direction: turned_direction,
             to_distance: slopes.unit,
+            is_ordinary: ordinary,
         })
+    }
+
+    /// [`certain_depths`] of the ray; none where it is not far from all overflow.
+    #[inline(always)]
+    pub fn certain_depths(&self, t_min: f32, t_max: f32) -> [f32; 2] {
+        if self.is_ordinary {
+            certain_depths(t_min, t_max, self.direction[2])
+        } else {
+            [f32::INFINITY, f32::NEG_INFINITY]
+        }
     }
 
     /// What of the tree may hold a hit from `t_min` to `t_max`.
@@ -189,6 +204,15 @@ pub(super) fn last_depth(t_max: f32, main: f32) -> f32 {
     t_max * (1.0 + RANGE_PAD) * main + TINY.copysign(main)
 }
 
+/// Depths ahead, in the direction of rays whose main direction component is `main`: what is certain to be crossed between
+/// them is crossed after `t_min`, which is not negative, and before `t_max`.
+#[inline(always)]
+pub(super) fn certain_depths(t_min: f32, t_max: f32, main: f32) -> [f32; 2] {
+    let sign = 1.0_f32.copysign(main);
+    let begin = sign * last_depth(larger(t_min, LEAST_CERTAIN), main);
+    [begin, sign * first_depth(t_max, main)]
+}
+
 /// The axis that [`Caster`] takes as the main one.
 #[inline(always)]
 pub(super) fn main_axis(direction: [f32; 3]) -> usize {
@@ -198,9 +222,11 @@ pub(super) fn main_axis(direction: [f32; 3]) -> usize {
 /// Whether `direction`, whose main component is `main`, and `origin` are far from all overflow.
 #[inline(always)]
 pub(super) fn is_ordinary(origin: [f32; 3], main: f32, reach: f32) -> bool {
-    ORDINARY_LENGTH.contains(&main.abs())
-        && all_within(origin, ORDINARY_COORDINATE)
-        && reach <= ORDINARY_COORDINATE
+    let length = main.abs();
+    (ORDINARY_LENGTH.start <= length)
+        & (length < ORDINARY_LENGTH.end)
+        & all_within(origin, ORDINARY_COORDINATE)
+        & (reach <= ORDINARY_COORDINATE)
 }
 
 /// A direction whose reciprocals and their products with coordinates are finite.
@@ -255,19 +281,22 @@ pub(super) fn turned(v: [f32; 3], axes: [usize; 3]) -> [f32; 3] {
 /// Whether no component is beyond `limit`, or NaN.
 #[inline(always)]
 fn all_within(v: [f32; 3], limit: f32) -> bool {
-    v[0].abs() <= limit && v[1].abs() <= limit && v[2].abs() <= limit
+    (v[0].abs() <= limit) & (v[1].abs() <= limit) & (v[2].abs() <= limit)
 }
 
-/// Whether `main` is the [`main_axis`] of a direction, whose components are in the order of its [`AXES`].
+/// Whether the second and the third axis may have components as large as that of `main`: of equal ones the lowest is the
+/// main axis.
 #[inline(always)]
-pub(super) fn leads(main: usize, turned: [f32; 3]) -> bool {
+pub(super) fn may_equal(main: usize) -> [bool; 2] {
+    [main < 2, main == 0]
+}
+
+/// Whether the last component is that of the [`main_axis`] of a direction, whose components are in the order of its
+/// [`AXES`]; the others [`may_equal`] it or not. False of NaN; without a branch.
+#[inline(always)]
+pub(super) fn leads(may_equal: [bool; 2], turned: [f32; 3]) -> bool {
     let [x, y, z] = per_axis(|k| turned[k].abs());
-    // Of equal ones the lowest axis is the main one. False of NaN.
-    match main {
-        0 => (x <= z) & (y <= z),
-        1 => (x <= z) & (y < z),
-        _ => (x < z) & (y < z),
-    }
+    ((x < z) | (x == z) & may_equal[0]) & ((y < z) | (y == z) & may_equal[1])
 }
 
 #[inline(always)]

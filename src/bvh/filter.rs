@@ -8,6 +8,9 @@ use crate::math::UNIT_ROUNDOFF;
 /// What the exact test takes for an edge, in units of e; with room.
 const LEAST_WEIGHT_ERROR: f32 = 1.0 / (1 << 27) as f32;
 
+/// Said of a block in the place of its triangles: no lane has this bit.
+pub(super) const CERTAIN: u32 = 1 << 31;
+
 /// Depths of crossings along the main axis, with bounds of their errors.
 ///
 /// With edge functions of sum A the crossing of a triangle at the depths z₁, z₂ and z₃ is at the
@@ -205,9 +208,16 @@ impl<S> Filter<S> {
         }
     }
 
-    /// The triangles of `block` that [`Filter::candidates`] are.
+    /// The triangles of `block` that [`Seen::candidates`] are, but for those behind the origin. With `SURE` it is
+    /// [`CERTAIN`] where the exact test accepts one for certain, between these depths ahead.
     #[inline(always)]
-    pub fn test<const W: usize>(&self, block: &Block<W>, count: u32, window: &Window) -> u32
+    pub fn test<const SURE: bool, const W: usize>(
+        &self,
+        block: &Block<W>,
+        count: u32,
+        window: &Window,
+        [begin, end]: [f32; 2],
+    ) -> u32
     where
         S: Lanes<W>,
     {
@@ -223,6 +233,14 @@ impl<S> Filter<S> {
         let lanes = seen.candidates(depths, u32::MAX >> (32 - count));
         if lanes == 0 {
             return 0;
+        }
+        if SURE {
+            let certain = seen.certain(self.is_reversed);
+            let begins = S::splat(begin).lt(certain.near);
+            let ends = certain.far.lt(S::splat(end));
+            if lanes & certain.lanes & begins & ends != 0 {
+                return CERTAIN;
+            }
         }
         lanes & !self.certainly_behind(&corners, &seen)
     }

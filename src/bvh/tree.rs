@@ -3,7 +3,7 @@
 use super::build::{Builder, build};
 use super::caster::{Caster, Window};
 use super::count::{Counter, Silent, TraversalCounts};
-use super::filter::Filter;
+use super::filter::{CERTAIN, Filter};
 use super::hit::{Hit, HitRow, Search, key};
 use super::layout::{Block, ChildRef, Node, Tree};
 use super::packet::Together;
@@ -121,7 +121,7 @@ impl Bvh {
 
     /// Whether anything is hit in `t_min < t < t_max`.
     pub fn any_hit(&self, ray: &Ray) -> bool {
-        self.any_hit_if(ray, |_| true)
+        self.is_blocked(ray, &mut Silent)
     }
 
     /// Whether there is a hit that `accept` does not turn down.
@@ -151,8 +151,12 @@ impl Bvh {
             let i = rest.trailing_zeros() as usize;
             rest &= rest - 1;
             let ray = rays.get(i);
+            if ANY {
+                hits.is_hit |= u64::from(self.is_blocked(&ray, &mut Silent)) << i;
+                continue;
+            }
             let mut search = Search::beyond(&ray, hits.get(i));
-            self.cast::<ANY, _>(&ray, &mut search, 0, &|_: &Hit| true, &mut Silent);
+            self.cast::<false, _>(&ray, &mut search, 0, &|_: &Hit| true, &mut Silent);
             if let Some(hit) = &search.hit {
                 hits.set(i, hit);
             }
@@ -193,8 +197,7 @@ impl Bvh {
 
     /// [`Bvh::any_hit`], adding to `counts` what it looked at.
     pub fn any_hit_counted(&self, ray: &Ray, counts: &mut TraversalCounts) -> bool {
-        self.search::<true, _>(ray, &|_: &Hit| true, counts)
-            .is_some()
+        self.is_blocked(ray, counts)
     }
 
     /// Around all triangles that can be hit; empty where there are none.
@@ -236,6 +239,20 @@ impl Bvh {
         search.hit
     }
 
+    /// Whether there is any hit, whatever it is: most are certain without the exact test.
+    fn is_blocked(&self, ray: &Ray, counter: &mut impl Counter) -> bool {
+        let mut search = Search::new(ray.t_min, ray.t_max);
+        let accept = |_: &Hit| true;
+        match &self.body {
+            Body::Eight(tree) => {
+                self.cast_in::<true, true, 8, _>(tree, ray, &mut search, 0, &accept, counter)
+            }
+            Body::Sixteen(tree) => {
+                self.cast_in::<true, true, 16, _>(tree, ray, &mut search, 0, &accept, counter)
+            }
+        }
+    }
+
     /// Looks for a hit better than that of `search`, as instance `instance`.
     pub(super) fn cast<const ANY: bool, C: Counter>(
         &self,
@@ -247,16 +264,18 @@ impl Bvh {
     ) {
         match &self.body {
             Body::Eight(tree) => {
-                self.cast_in::<ANY, 8, _>(tree, ray, search, instance, accept, counter);
+                self.cast_in::<ANY, false, 8, _>(tree, ray, search, instance, accept, counter);
             }
             Body::Sixteen(tree) => {
-                self.cast_in::<ANY, 16, _>(tree, ray, search, instance, accept, counter);
+                self.cast_in::<ANY, false, 16, _>(tree, ray, search, instance, accept, counter);
             }
         }
     }
 
+    /// With `ANY` it returns whether there is a hit that `accept` likes; with `SURE` that may be one of which it is not asked,
+    /// and `search` does not hear.
     #[inline(always)]
-    fn cast_in<const ANY: bool, const W: usize, C: Counter>(
+    fn cast_in<const ANY: bool, const SURE: bool, const W: usize, C: Counter>(
         &self,
         tree: &Tree<W>,
         ray: &Ray,
@@ -264,20 +283,32 @@ impl Bvh {
         instance: u32,
         accept: &impl Fn(&Hit) -> bool,
         counter: &mut C,
-    ) where
+    ) -> bool
+    where
         Level: Run<W>,
     {
         let Some(ray) = &Caster::new(ray, &tree.bounds, self.reach, 0.0) else {
-            return;
+            return false;
+        };
+        let certain = match SURE {
+            true => ray.certain_depths(search.t_min, search.t_best),
+            false => [0.0; 2],
         };
         let mut seek = |root: ChildRef| {
             let mut walk = Walk::new(root, ray.window(search.t_min, search.t_best));
-            while let Some(stop) = self.level.run(Step::<ANY, W, C> {
-                tree,
+            while let Some(stop) = self.level.run(Step::<ANY, SURE, W, C> {
+                blocks: Blocks {
+                    blocks: &tree.blocks,
+                    certain,
+                },
+                nodes: &tree.nodes,
                 ray,
                 walk: &mut walk,
                 counter,
             }) {
+                if SURE && stop.lanes == CERTAIN {
+                    return true;
+                }
                 let block = &tree.blocks[stop.leaf.index()];
                 if search_lanes::<ANY, W>(block, stop.lanes, ray, search, instance, accept, counter)
                 {
@@ -288,15 +319,11 @@ impl Bvh {
             false
         };
         if !tree.nodes.is_empty() {
-            seek(ChildRef::node(0));
-            return;
+            return seek(ChildRef::node(0));
         }
         // All blocks in turn.
-        for (block, first) in (0..tree.triangles).step_by(W).enumerate() {
-            if seek(ChildRef::leaf(block, W.min(tree.triangles - first))) {
-                return;
-            }
-        }
+        let mut blocks = (0..tree.triangles).step_by(W).enumerate();
+        blocks.any(|(block, first)| seek(ChildRef::leaf(block, W.min(tree.triangles - first))))
     }
 }
 
@@ -336,32 +363,40 @@ fn search_lanes<const ANY: bool, const W: usize>(
 }
 
 /// A walk to the next block that needs the exact test, to be compiled for each kind of vectors.
-struct Step<'a, const ANY: bool, const W: usize, C> {
-    tree: &'a Tree<W>,
+struct Step<'a, const ANY: bool, const SURE: bool, const W: usize, C> {
+    nodes: &'a [Node<W>],
+    blocks: Blocks<'a, SURE, W>,
     ray: &'a Caster,
     walk: &'a mut Walk,
     counter: &'a mut C,
 }
 
-impl<const ANY: bool, const W: usize, C: Counter> Job<W> for Step<'_, ANY, W, C> {
+impl<const ANY: bool, const SURE: bool, const W: usize, C: Counter> Job<W>
+    for Step<'_, ANY, SURE, W, C>
+{
     type Output = Option<Stop>;
 
     #[inline(always)]
     fn run<S: Lanes<W>>(self) -> Option<Stop> {
         let Self {
-            tree,
+            nodes,
+            blocks,
             ray,
             walk,
             counter,
         } = self;
-        walk.next::<S, ANY, W, _>(&tree.nodes, ray, &Blocks(&tree.blocks), counter)
+        walk.next::<S, ANY, W, _>(nodes, ray, &blocks, counter)
     }
 }
 
 /// The leaves of a tree over triangles.
-struct Blocks<'a, const W: usize>(&'a [Block<W>]);
+struct Blocks<'a, const SURE: bool, const W: usize> {
+    blocks: &'a [Block<W>],
+    /// See [`Filter::test`].
+    certain: [f32; 2],
+}
 
-impl<const W: usize> Leaves<W> for Blocks<'_, W> {
+impl<const SURE: bool, const W: usize> Leaves<W> for Blocks<'_, SURE, W> {
     type Test<S> = Filter<S>;
 
     #[inline(always)]
@@ -371,11 +406,12 @@ impl<const W: usize> Leaves<W> for Blocks<'_, W> {
 
     #[inline(always)]
     fn test<S: Lanes<W>>(&self, filter: &Filter<S>, leaf: ChildRef, window: &Window) -> u32 {
-        filter.test(&self.0[leaf.index()], leaf.count(), window)
+        let block = &self.blocks[leaf.index()];
+        filter.test::<SURE, W>(block, leaf.count(), window, self.certain)
     }
 
     #[inline(always)]
     fn announce(&self, leaf: ChildRef) {
-        prefetch(self.0, leaf.index());
+        prefetch(self.blocks, leaf.index());
     }
 }

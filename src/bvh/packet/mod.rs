@@ -13,18 +13,17 @@ mod walk;
 pub(super) use walk::Together;
 
 use super::beam::{Beam, Course, Interval};
-use super::caster::{AXES, first_depth, is_ordinary, last_depth, leads, main_axis, turned};
+use super::caster::{
+    AXES, certain_depths, first_depth, is_ordinary, last_depth, leads, main_axis, may_equal, turned,
+};
 use super::hit::{Hit, HitRow};
 use super::layout::{Block, Tree};
 use super::simd::Lanes;
 use super::triangle::{Corners, Crossings, ExactRay, ExactRays};
-use crate::math::{ROW, RayRow, Row, VectorRow, larger};
+use crate::math::{ROW, RayRow, Row, larger};
 
 /// The most rays of a packet.
 pub(super) const SIZE: usize = ROW;
-
-/// Parameters below this are rounded to few digits: what the exact test will make of them is not certain.
-const LEAST_CERTAIN: f32 = 1.0 / (1u128 << 100) as f32;
 
 /// Of so many rays at a time, and fewer, each is tested by itself.
 const FEW: u32 = 2;
@@ -66,11 +65,13 @@ impl<'a> Packet<'a> {
     #[inline(always)]
     pub fn new<const W: usize>(rays: &RayRow, found: &'a mut HitRow, reach: f32) -> Self {
         let count = rays.count();
-        let groups = count.div_ceil(W);
         let first = rays.get(0);
         let main = main_axis(first.direction.to_array());
         let axes = AXES[main];
         let is_reversed = first.direction[main] < 0.0;
+        // No `array::map`, see `triangle`.
+        let [x, y, z] = axes;
+        let (from, to) = (&rays.origins.0, &rays.directions.0);
         let mut packet = Self {
             course: Course {
                 center: turned(first.origin.to_array(), axes),
@@ -78,8 +79,8 @@ impl<'a> Packet<'a> {
                 is_reversed,
                 size: reach,
             },
-            origin: turned_rows(&rays.origins, axes),
-            direction: turned_rows(&rays.directions, axes),
+            origin: [from[x], from[y], from[z]],
+            direction: [to[x], to[y], to[z]],
             shear: [[0.0; SIZE]; 2],
             depth: [[0.0; SIZE]; 2],
             far_end: usize::from(!is_reversed),
@@ -89,72 +90,58 @@ impl<'a> Packet<'a> {
             held: [0; SIZE],
             holds: 0,
             live: u64::MAX >> (SIZE - count),
-            groups,
+            groups: count.div_ceil(W),
             found,
         };
-        // The first ray stands for those that a group lacks; they look nowhere.
-        for i in count..groups * W {
+        let mut t_max = packet.found.t;
+        // The first ray stands for those that are not there; they look nowhere.
+        for i in count..SIZE {
             for k in 0..3 {
                 packet.origin[k][i] = packet.origin[k][0];
                 packet.direction[k][i] = packet.direction[k][0];
             }
             packet.t_min[i] = 0.0;
-            packet.found.t[i] = 0.0;
+            t_max[i] = 0.0;
         }
-        packet.measure::<W>();
+        packet.measure(&t_max);
         packet
+    }
+
+    /// Finds what follows from rays and their ranges. Without a branch or a bound that the compiler does not know, for
+    /// vectors.
+    #[inline(always)]
+    fn measure(&mut self, t_max: &Row) {
+        let (near, far) = (1 - self.far_end, self.far_end);
+        let [dx, dy, dz] = &self.direction;
+        for i in 0..SIZE {
+            let main_inverse = 1.0 / dz[i];
+            self.shear[0][i] = dx[i] * main_inverse;
+            self.shear[1][i] = dy[i] * main_inverse;
+            let t_min = larger(self.t_min[i], 0.0);
+            self.t_min[i] = t_min;
+            self.depth[near][i] = first_depth(t_min, dz[i]);
+            self.depth[far][i] = last_depth(t_max[i], dz[i]);
+            [self.begin[i], self.surely[i]] = certain_depths(t_min, t_max[i], dz[i]);
+        }
     }
 
     /// Whether all rays have the main axis in common and are far from all overflow.
     #[inline(always)]
-    pub fn are_alike<const W: usize>(&self, reach: f32) -> bool {
+    pub fn are_alike(&self, reach: f32) -> bool {
+        let ([ox, oy, oz], [dx, dy, dz]) = (&self.origin, &self.direction);
         let Course {
             axes, is_reversed, ..
         } = self.course;
-        let main = axes[2];
+        let (may_equal, ends) = (may_equal(axes[2]), &self.depth[self.far_end]);
+        // Without a branch, for vectors.
         let mut are_alike = true;
-        for group in 0..self.groups {
-            for i in group * W..(group + 1) * W {
-                let origin = [self.origin[0][i], self.origin[1][i], self.origin[2][i]];
-                let [x, y, z] = [
-                    self.direction[0][i],
-                    self.direction[1][i],
-                    self.direction[2][i],
-                ];
-                are_alike &= leads(main, [x, y, z])
-                    & ((z < 0.0) == is_reversed)
-                    & is_ordinary(origin, z, reach)
-                    & !self.found.t[i].is_nan();
-            }
+        for i in 0..SIZE {
+            are_alike &= leads(may_equal, [dx[i], dy[i], dz[i]])
+                & ((dz[i] < 0.0) == is_reversed)
+                & is_ordinary([ox[i], oy[i], oz[i]], dz[i], reach)
+                & !ends[i].is_nan();
         }
         are_alike
-    }
-
-    /// Finds what follows from rays and ranges.
-    #[inline(always)]
-    fn measure<const W: usize>(&mut self) {
-        let sign = if self.course.is_reversed { -1.0 } else { 1.0 };
-        let (mut least, mut most) = ([0.0; SIZE], [0.0; SIZE]);
-        for group in 0..self.groups {
-            for i in group * W..(group + 1) * W {
-                let main = self.direction[2][i];
-                let main_inverse = 1.0 / main;
-                self.shear[0][i] = self.direction[0][i] * main_inverse;
-                self.shear[1][i] = self.direction[1][i] * main_inverse;
-                let t_min = if self.t_min[i] > 0.0 {
-                    self.t_min[i]
-                } else {
-                    0.0
-                };
-                self.t_min[i] = t_min;
-                least[i] = first_depth(t_min, main);
-                most[i] = last_depth(self.found.t[i], main);
-                self.begin[i] = sign * last_depth(larger(t_min, LEAST_CERTAIN), main);
-                self.surely[i] = sign * first_depth(self.found.t[i], main);
-            }
-        }
-        self.depth[1 - self.far_end] = least;
-        self.depth[self.far_end] = most;
     }
 
     /// Around the rays of a group, and the largest coordinate of their origins.
@@ -311,9 +298,4 @@ fn row<S: Lanes<W>, const W: usize>(row: &Row, group: usize) -> S {
 #[inline(always)]
 fn array<const W: usize>(row: &Row, group: usize) -> &[f32; W] {
     &row.as_chunks::<W>().0[group]
-}
-
-#[inline(always)]
-fn turned_rows(rows: &VectorRow, axes: [usize; 3]) -> [Row; 3] {
-    [rows.0[axes[0]], rows.0[axes[1]], rows.0[axes[2]]]
 }

@@ -51,7 +51,7 @@ impl<const ANY: bool, const W: usize> Job<W> for Together<'_, ANY, W> {
             found,
         } = self;
         let mut packet = Packet::new::<W>(rays, found, reach);
-        if !packet.are_alike::<W>(reach) {
+        if !packet.are_alike(reach) {
             return u64::MAX;
         }
         let groups = packet.groups;
