@@ -222,9 +222,7 @@ pub(super) fn main_axis(direction: [f32; 3]) -> usize {
 /// Whether `direction`, whose main component is `main`, and `origin` are far from all overflow.
 #[inline(always)]
 pub(super) fn is_ordinary(origin: [f32; 3], main: f32, reach: f32) -> bool {
-    let length = main.abs();
-    (ORDINARY_LENGTH.start <= length)
-        & (length < ORDINARY_LENGTH.end)
+    ORDINARY_LENGTH.contains(&main.abs())
         & all_within(origin, ORDINARY_COORDINATE)
         & (reach <= ORDINARY_COORDINATE)
 }

@@ -9,6 +9,8 @@ use exr::prelude::{
     MetaData, ReadChannels, ReadLayers, ReadSpecificChannel, Vec2, read as read_exr,
 };
 
+#[cfg(feature = "exr")]
+use super::exr_room::most_pixels;
 use super::{ImportError, files, images};
 use crate::color::{Rgb, srgb8_to_linear};
 use crate::light::Environment;
@@ -43,15 +45,18 @@ impl<'a> EnvironmentFile<'a> {
         }
         let metadata = MetaData::read_from_buffered(Cursor::new(&self.bytes), false)
             .map_err(|error| self.damaged(&error.to_string()))?;
-        let sizes = metadata.headers.iter().map(|header| header.layer_size);
-        let size = sizes.max_by_key(|size| size.area()).unwrap_or(Vec2(0, 0));
+        let parts = metadata.headers.iter();
+        let Some(part) = parts.max_by_key(|header| header.layer_size.area()) else {
+            return Ok(Some([0, 0]));
+        };
+        let size = part.layer_size;
         if size.area() as u64 > MAX_PIXELS {
             return Err(self.damaged(&format!(
                 "{} × {} pixels are more than {MAX_PIXELS}",
                 size.0, size.1
             )));
         }
-        if size.area() as u64 > files::most_pixels(self.bytes.len() as u64) {
+        if size.area() as u64 > most_pixels(part, self.bytes.len() as u64) {
             return Err(self.damaged(&format!(
                 "{} × {} pixels do not fit into its {} bytes",
                 size.0,

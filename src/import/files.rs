@@ -51,9 +51,3 @@ fn read_in_pieces(path: &Path, length: usize, modified: Option<SystemTime>) -> i
     })?;
     Ok(bytes)
 }
-
-/// The most pixels that a PNG or EXR file of so many bytes can hold: the 8 × 8 of a block of DWA in a byte, in the
-/// longest runs of deflate, 1,032 bytes to one.
-pub fn most_pixels(bytes: u64) -> u64 {
-    bytes.saturating_mul(64 * 1032)
-}

@@ -7,6 +7,8 @@
 mod budget;
 mod census;
 mod environment;
+#[cfg(feature = "exr")]
+mod exr_room;
 mod files;
 #[cfg(feature = "gltf")]
 mod gltf;
@@ -26,7 +28,8 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use crate::scene::{Keep, LeftOut, Needs, Scene, Settings};
-pub use files::most_pixels;
+#[cfg(feature = "exr")]
+pub use exr_room::most_pixels as most_exr_pixels;
 #[cfg(feature = "gltf")]
 pub use gltf::{ExtensionSupport, Support, extension_table};
 pub use scene_file::{Defaults, SceneOptions};

@@ -18,7 +18,7 @@ use thiserror::Error;
 
 use super::Picture;
 use crate::color::{Rgb, srgb_to_linear, srgb8_to_linear};
-use crate::import::most_pixels;
+use crate::import::most_exr_pixels;
 use crate::math::UVec2;
 use crate::scene::MAX_PIXELS;
 
@@ -114,7 +114,9 @@ fn png(file: BufReader<File>, bytes: u64) -> Result<Opened, ReadProblem> {
         .into_decoder()
         .map_err(invalid)?;
     let (width, height) = decoder.dimensions();
-    check_size(width.into(), height.into(), bytes)?;
+    // In the longest runs of deflate, 1,032 bytes to one, of pixels of a bit.
+    let most = bytes.saturating_mul(8 * 1032);
+    check_size(width.into(), height.into(), most, bytes)?;
     let mut limits = Limits::default();
     // Four channels of 16 bits, and a copy.
     limits.max_alloc = Some(2 * 8 * MAX_PIXELS);
@@ -149,7 +151,8 @@ fn exr(mut file: BufReader<File>, bytes: u64) -> Result<Opened, ReadProblem> {
     };
     for header in &headers {
         let Vec2(width, height) = header.layer_size;
-        check_size(width as u64, height as u64, bytes)?;
+        let most = most_exr_pixels(header, bytes);
+        check_size(width as u64, height as u64, most, bytes)?;
     }
     let has_other_primaries = headers
         .first()
@@ -217,12 +220,13 @@ fn put(picture: &mut Picture, Vec2(x, y): Vec2<usize>, color: Rgb) {
     picture.pixels[y * picture.size.x as usize + x] = color;
 }
 
-fn check_size(width: u64, height: u64, bytes: u64) -> Result<(), ReadProblem> {
+/// Whether a file of so many `bytes`, which can hold `most` pixels, may claim these.
+fn check_size(width: u64, height: u64, most: u64, bytes: u64) -> Result<(), ReadProblem> {
     let pixels = width.saturating_mul(height);
     if pixels > MAX_PIXELS {
         return Err(ReadProblem::TooLarge { width, height });
     }
-    if pixels > most_pixels(bytes) {
+    if pixels > most {
         return Err(ReadProblem::TooShort {
             width,
             height,

@@ -95,14 +95,12 @@ impl<'a> Packet<'a> {
         };
         let mut t_max = packet.found.t;
         // The first ray stands for those that are not there; they look nowhere.
-        for i in count..SIZE {
-            for k in 0..3 {
-                packet.origin[k][i] = packet.origin[k][0];
-                packet.direction[k][i] = packet.direction[k][0];
-            }
-            packet.t_min[i] = 0.0;
-            t_max[i] = 0.0;
+        for row in packet.origin.iter_mut().chain(&mut packet.direction) {
+            let first = row[0];
+            row[count..].fill(first);
         }
+        packet.t_min[count..].fill(0.0);
+        t_max[count..].fill(0.0);
         packet.measure(&t_max);
         packet
     }
