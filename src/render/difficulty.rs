@@ -18,8 +18,8 @@ use crate::film::{Moments, Pixel, Rect, relative_weights};
 /// | cornell  | 0.96 | 0.98 | 0.96 | 0.98 |
 /// | terrain  | 0.98 | 0.99 | 1.02 | 1.03 |
 ///
-/// Neither the factor of a tile without the pixel's own part, nor that of the film in its place, nor halves that are
-/// allotted alike change what is stated by more than 0.01, or for the better.
+/// Nothing is gained where the factor of a tile is taken without the pixel's own part, or that of the film in its place;
+/// halves that are both allotted by both state less.
 const NEIGHBOURHOOD: f32 = 32.0;
 
 /// How varied the samples of each half of each pixel are, over what the metric divides by.
