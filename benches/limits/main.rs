@@ -1,7 +1,7 @@
 //! `cargo bench --bench limits -- WHAT [SCENE…]`: is what a render says about its own error true?
 //!
-//! * `calibration`: over 200 seeds, how often the 95 % interval holds the true error;
-//! * `asked`: `--error` and `--time`, asked against got, and what was forecast;
+//! * `calibration`: over 200 seeds, how often the 95 % interval holds the true error, and what is stated over what is true;
+//! * `asked`: `--error` and `--time`, asked against stated, true and forecast;
 //! * `adaptive`: error of adaptive against uniform sampling at equal processor time.
 //!
 //! True errors are those against a render with many more samples, whose own estimated

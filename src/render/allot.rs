@@ -244,8 +244,8 @@ impl Allotment {
         self.outcome(scale, self.least(by_score.samples))
     }
 
-    /// The largest scale whose outcome is `within`, where all smaller ones are.
-    pub fn scale(&self, within: impl Fn(&Outcome) -> bool) -> f64 {
+    /// The largest scale whose outcome is `within`, where all smaller ones are, and the least that is not.
+    pub fn scales(&self, within: impl Fn(&Outcome) -> bool) -> [f64; 2] {
         // Scores are powers, up to the first, of weights from 1e-30 to not much more than 1.
         let (mut low, mut high) = (-50.0_f64, 130.0_f64);
         for _ in 0..18 {
@@ -256,7 +256,7 @@ impl Allotment {
                 high = middle;
             }
         }
-        low.exp2()
+        [low.exp2(), high.exp2()]
     }
 
     /// Sets the goals of all tiles.

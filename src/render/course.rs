@@ -77,18 +77,21 @@ impl Course {
         }
     }
 
+    /// The last step whose outcome is `within`, where every earlier one is, and the first that is not.
+    pub fn around(&self, within: impl Fn(&Outcome) -> bool) -> [Step; 2] {
+        match self {
+            Self::Uniform(uniform) => uniform.around(within),
+            Self::Adaptive(allotment) => allotment.scales(within).map(|reach| Step {
+                reach,
+                outcome: allotment.at(reach),
+            }),
+        }
+    }
+
     /// The last step whose outcome is `within`, where every earlier one is.
     pub fn furthest(&self, within: impl Fn(&Outcome) -> bool) -> Step {
-        match self {
-            Self::Uniform(uniform) => uniform.furthest(within),
-            Self::Adaptive(allotment) => {
-                let scale = allotment.scale(within);
-                Step {
-                    reach: scale,
-                    outcome: allotment.at(scale),
-                }
-            }
-        }
+        let [furthest, _] = self.around(within);
+        furthest
     }
 
     /// Makes `step` the goal of the tiles.
@@ -134,7 +137,7 @@ impl Uniform {
         }
     }
 
-    fn furthest(&self, within: impl Fn(&Outcome) -> bool) -> Step {
+    fn around(&self, within: impl Fn(&Outcome) -> bool) -> [Step; 2] {
         let rounds = |rounds: u64| self.taken.max(rounds * self.unit);
         let (mut low, mut high) = (self.taken / self.unit, MOST / self.unit);
         while low + 1 < high {
@@ -145,11 +148,10 @@ impl Uniform {
                 high = middle;
             }
         }
-        let samples = rounds(low);
-        Step {
+        [low, high].map(rounds).map(|samples| Step {
             reach: samples as f64,
             outcome: self.outcome(samples),
-        }
+        })
     }
 
     fn halves(&self, samples: u64) -> Halves {

@@ -43,14 +43,16 @@ const GROWTH: f64 = 2.0;
 /// A course is kept until there are so many times the samples that it began with: what is known of the pixels is not much
 /// more before.
 const FRESH: f64 = 1.5;
-/// The least by which a pass multiplies it; the first that adds a sample.
-const LEAST_GROWTHS: [f64; 4] = [1.02, 1.3, 2.0, 4.0];
-/// The share of the work after which a forecast is made.
-const FORECAST_SHARE: f64 = 0.05;
-/// The samples of a pixel, on average, that a forecast wants to see,
-const FORECAST_SAMPLES: u64 = 8;
-/// unless this share of the work is done.
-const LATEST_FORECAST_SHARE: f64 = 0.25;
+/// The least by which a pass multiplies it, where the course has steps as small: near a limit passes would become ever
+/// smaller.
+const LEAST_GROWTH: f64 = 1.02;
+/// The share of the work after which a forecast is made, by the samples of a pixel, on average, that there are at least. Of the
+/// first ones nobody can tell where the error is: what they lead to is foreseen to take half of what it takes. (Passes
+/// double the samples, or a little less.)
+const FORECAST_SHARES: [(f64, f64); 3] = [(7.0, 0.05), (3.0, 0.25), (0.0, 0.5)];
+/// The samples of a pixel, on average, from which on a pass tells how fast the error falls. In the first ones a half has no
+/// variance of its own, and the pass brings less than foreseen whatever the pattern.
+const LEARNING_SAMPLES: f64 = 3.0;
 
 /// What it takes, for a pixel, to find out where samples go, bytes.
 const ALLOTMENT_BYTES: usize = 128;
@@ -260,8 +262,9 @@ impl Run<'_> {
                 return StoppedBy::Samples;
             };
             // A course that was kept foresaw by an exponent that may be out of date.
+            let is_telling = is_new && self.per_pixel(now.samples) >= LEARNING_SAMPLES;
             foreseen = sums
-                .filter(|_| is_new)
+                .filter(|_| is_telling)
                 .map(|sums| (step.outcome.error / now.error, sums));
             course.aim(&mut self.tiles, &step);
             if let Some(end) = self.pass(self.limits.deadline) {
@@ -341,6 +344,10 @@ impl Run<'_> {
         self.tiles.iter().all(|tile| tile.taken == tile.goal)
     }
 
+    fn per_pixel(&self, samples: u64) -> f64 {
+        samples as f64 / self.job.crop.area().max(1) as f64
+    }
+
     fn rays(&self) -> f64 {
         self.tiles.iter().map(|tile| tile.rays.total() as f64).sum()
     }
@@ -362,10 +369,9 @@ impl Run<'_> {
             Some(_) => self.pace.seconds() / forecast.seconds,
             None => now.samples as f64 / forecast.samples as f64,
         };
-        // Of a handful of samples nobody can tell how fast the error will fall.
-        let is_known = now.samples >= FORECAST_SAMPLES * self.job.crop.area()
-            && share >= FORECAST_SHARE
-            || share >= LATEST_FORECAST_SHARE;
+        let per_pixel = self.per_pixel(now.samples);
+        let is_known =
+            (FORECAST_SHARES.iter()).any(|&(least, of)| per_pixel >= least && share >= of);
         if self.limits.is_open() && error.is_some() && !self.has_forecast && is_known {
             self.has_forecast = true;
             (self.observe)(Event::Forecast(forecast));
@@ -375,12 +381,12 @@ impl Run<'_> {
             // A little further than asked for: most passes that aim at it get there.
             o.samples <= grown(GROWTH) && bounds.is_in_time(o) && bounds.is_short_of(o, 0.99)
         });
-        // Near a limit passes would become ever smaller; and some courses have no small steps.
-        let least = LEAST_GROWTHS.into_iter();
-        let least = least.map(|growth| course.furthest(|o| o.samples <= grown(growth)));
-        std::iter::once(wanted)
-            .filter(|step| step.outcome.samples > grown(LEAST_GROWTHS[0]))
-            .chain(least)
-            .find(|step| step.outcome.samples > now.samples)
+        if wanted.outcome.samples > grown(LEAST_GROWTH) {
+            return Some(wanted);
+        }
+        let [least, next] = course.around(|o| o.samples <= grown(LEAST_GROWTH));
+        [least, next]
+            .into_iter()
+            .find(|step| (now.samples + 1..=most_samples).contains(&step.outcome.samples))
     }
 }
