@@ -10,12 +10,10 @@ use exr::prelude::{
 };
 
 #[cfg(feature = "exr")]
-use super::exr_room::most_pixels;
+use super::exr_room::check_exr_size;
 use super::{ImportError, files, images};
 use crate::color::{Rgb, srgb8_to_linear};
 use crate::light::Environment;
-#[cfg(feature = "exr")]
-use crate::scene::MAX_PIXELS;
 use crate::texture::Pixels;
 
 /// The first bytes of an OpenEXR file.
@@ -45,25 +43,10 @@ impl<'a> EnvironmentFile<'a> {
         }
         let metadata = MetaData::read_from_buffered(Cursor::new(&self.bytes), false)
             .map_err(|error| self.damaged(&error.to_string()))?;
-        let parts = metadata.headers.iter();
-        let Some(part) = parts.max_by_key(|header| header.layer_size.area()) else {
-            return Ok(Some([0, 0]));
-        };
-        let size = part.layer_size;
-        if size.area() as u64 > MAX_PIXELS {
-            return Err(self.damaged(&format!(
-                "{} × {} pixels are more than {MAX_PIXELS}",
-                size.0, size.1
-            )));
-        }
-        if size.area() as u64 > most_pixels(part, self.bytes.len() as u64) {
-            return Err(self.damaged(&format!(
-                "{} × {} pixels do not fit into its {} bytes",
-                size.0,
-                size.1,
-                self.bytes.len()
-            )));
-        }
+        let bytes = self.bytes.len() as u64;
+        check_exr_size(&metadata.headers, bytes).map_err(|e| self.damaged(&e.to_string()))?;
+        let sizes = metadata.headers.iter().map(|header| header.layer_size);
+        let size = sizes.max_by_key(|size| size.area()).unwrap_or(Vec2(0, 0));
         Ok(Some([size.0, size.1]))
     }
 

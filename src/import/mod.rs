@@ -29,7 +29,7 @@ use thiserror::Error;
 
 use crate::scene::{Keep, LeftOut, Needs, Scene, Settings};
 #[cfg(feature = "exr")]
-pub use exr_room::most_pixels as most_exr_pixels;
+pub use exr_room::{ExrSizeError, check_exr_size};
 #[cfg(feature = "gltf")]
 pub use gltf::{ExtensionSupport, Support, extension_table};
 pub use scene_file::{Defaults, SceneOptions};

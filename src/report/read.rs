@@ -18,7 +18,7 @@ use thiserror::Error;
 
 use super::Picture;
 use crate::color::{Rgb, srgb_to_linear, srgb8_to_linear};
-use crate::import::most_exr_pixels;
+use crate::import::{ExrSizeError, check_exr_size};
 use crate::math::UVec2;
 use crate::scene::MAX_PIXELS;
 
@@ -114,9 +114,7 @@ fn png(file: BufReader<File>, bytes: u64) -> Result<Opened, ReadProblem> {
         .into_decoder()
         .map_err(invalid)?;
     let (width, height) = decoder.dimensions();
-    // In the longest runs of deflate, 1,032 bytes to one, of pixels of a bit.
-    let most = bytes.saturating_mul(8 * 1032);
-    check_size(width.into(), height.into(), most, bytes)?;
+    check_png_size(width.into(), height.into(), bytes)?;
     let mut limits = Limits::default();
     // Four channels of 16 bits, and a copy.
     limits.max_alloc = Some(2 * 8 * MAX_PIXELS);
@@ -141,6 +139,22 @@ fn png(file: BufReader<File>, bytes: u64) -> Result<Opened, ReadProblem> {
     })
 }
 
+fn check_png_size(width: u64, height: u64, bytes: u64) -> Result<(), ReadProblem> {
+    let pixels = width.saturating_mul(height);
+    if pixels > MAX_PIXELS {
+        return Err(ReadProblem::TooLarge { width, height });
+    }
+    // In the longest runs of deflate, 1,032 bytes to one, of pixels of a bit.
+    if pixels > bytes.saturating_mul(8 * 1032) {
+        return Err(ReadProblem::TooShort {
+            width,
+            height,
+            bytes,
+        });
+    }
+    Ok(())
+}
+
 fn exr(mut file: BufReader<File>, bytes: u64) -> Result<Opened, ReadProblem> {
     let headers = MetaData::read_from_buffered(&mut file, false)
         .map_err(exr_problem)?
@@ -149,11 +163,7 @@ fn exr(mut file: BufReader<File>, bytes: u64) -> Result<Opened, ReadProblem> {
         let mut lists = headers.iter().map(|header| &header.channels.list);
         lists.any(|list| list.iter().any(|channel| channel.name.eq(name)))
     };
-    for header in &headers {
-        let Vec2(width, height) = header.layer_size;
-        let most = most_exr_pixels(header, bytes);
-        check_size(width as u64, height as u64, most, bytes)?;
-    }
+    check_exr_size(&headers, bytes)?;
     let has_other_primaries = headers
         .first()
         .and_then(|header| header.shared_attributes.chromaticities)
@@ -220,20 +230,21 @@ fn put(picture: &mut Picture, Vec2(x, y): Vec2<usize>, color: Rgb) {
     picture.pixels[y * picture.size.x as usize + x] = color;
 }
 
-/// Whether a file of so many `bytes`, which can hold `most` pixels, may claim these.
-fn check_size(width: u64, height: u64, most: u64, bytes: u64) -> Result<(), ReadProblem> {
-    let pixels = width.saturating_mul(height);
-    if pixels > MAX_PIXELS {
-        return Err(ReadProblem::TooLarge { width, height });
+impl From<ExrSizeError> for ReadProblem {
+    fn from(error: ExrSizeError) -> Self {
+        match error {
+            ExrSizeError::TooLarge { width, height } => Self::TooLarge { width, height },
+            ExrSizeError::TooShort {
+                width,
+                height,
+                bytes,
+            } => Self::TooShort {
+                width,
+                height,
+                bytes,
+            },
+        }
     }
-    if pixels > most {
-        return Err(ReadProblem::TooShort {
-            width,
-            height,
-            bytes,
-        });
-    }
-    Ok(())
 }
 
 fn is_rec_709(c: &Chromaticities) -> bool {

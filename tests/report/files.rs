@@ -255,9 +255,12 @@ fn a_small_file_cannot_claim_more_pixels_than_a_picture_has() {
 #[test]
 fn a_file_cannot_claim_more_pixels_than_its_bytes_can_hold() {
     let seeds = concat!(env!("CARGO_MANIFEST_DIR"), "/fuzz/seeds/exr");
-    for name in ["many-pixels", "many-channels"] {
+    for name in ["many-pixels", "many-channels", "many-channels-dwaa"] {
         let error = problem(&Path::new(seeds).join(name));
-        assert!(matches!(error, ReadProblem::TooShort { .. }), "{error}");
+        assert!(
+            matches!(error, ReadProblem::TooShort { .. }),
+            "{name}: {error}"
+        );
     }
 }
 
