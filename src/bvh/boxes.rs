@@ -8,7 +8,7 @@ use super::count::Silent;
 use super::layout::{ChildRef, Node};
 use super::simd::{Job, Lanes, Level, Run};
 use super::traverse::{Leaves, Stop, Walk};
-use crate::math::{Aabb, Ray, UNIT_ROUNDOFF};
+use crate::math::{Aabb, Ray};
 
 /// Children of a node.
 const WIDTH: usize = 8;
@@ -49,10 +49,9 @@ impl BoxTree {
         self.nodes.capacity() * size_of::<Node<WIDTH>>() + self.leaves.capacity() * size_of::<u32>()
     }
 
-    /// How far, in space, a point of `ray` may be outside of the box of what it was found in, where it was computed
-    /// from single precision numbers with a condition number of `condition`: 16 units in the last place.
-    pub fn slack(&self, ray: &Ray, condition: f32) -> f32 {
-        16.0 * UNIT_ROUNDOFF * condition * (ray.origin.abs().max_element() + self.reach)
+    /// Largest magnitude of a coordinate of [`Self::bounds`].
+    pub fn reach(&self) -> f32 {
+        self.reach
     }
 
     /// Calls `visit` with the index of each box, grown by `slack` on all sides, that `ray` may enter between its

@@ -4,7 +4,7 @@ use super::boxes::BoxTree;
 use super::count::Silent;
 use super::hit::{Hit, HitRow, Search};
 use super::tree::Bvh;
-use crate::math::{Aabb, DAffine3, DVec3, Ray, RayRow, Vec3};
+use crate::math::{Aabb, DAffine3, DVec3, Ray, RayRow, UNIT_ROUNDOFF, Vec3};
 
 /// What rays are traced through: one tree as it is, or instances of several.
 #[derive(Debug)]
@@ -189,7 +189,8 @@ impl Forest {
     /// ray there rounds origin and direction to `f32`, and the transform back stretches that by at most its condition
     /// number.
     fn search<const ANY: bool>(&self, ray: &Ray, accept: &impl Fn(&Hit) -> bool) -> Option<Hit> {
-        let slack = self.boxes.slack(ray, self.condition as f32);
+        let size = ray.origin.abs().max_element() + self.boxes.reach();
+        let slack = 16.0 * UNIT_ROUNDOFF * self.condition as f32 * size;
         let mut search = Search::new(ray.t_min, ray.t_max);
         self.boxes.visit(ray, slack, |index| {
             let instance = &self.instances[index as usize];

@@ -3,10 +3,13 @@
 use crate::bvh::BoxTree;
 use crate::color::Rgb;
 use crate::light::Light;
-use crate::math::{Aabb, Ray, RayRow, Row, first_places, places};
+use crate::math::{Aabb, Ray, RayRow, Row, UNIT_ROUNDOFF, Vec3, first_places, places};
 
 /// Up to so many lights are looked at one after the other, which is quicker than a tree over them.
 const FEW: usize = 8;
+
+/// What a hit may be off by: 16 units in the last place of what it is computed from, in double precision, and rounded to.
+const SLACK: f32 = 16.0 * UNIT_ROUNDOFF;
 
 /// The lights that rays can meet.
 #[derive(Debug)]
@@ -34,16 +37,16 @@ impl<'a> LightSurfaces<'a> {
         let (lights, boxes): (Vec<_>, Vec<Aabb>) = lights
             .filter_map(|(number, light)| Some(((number, light), light.surface_bounds()?)))
             .unzip();
-        let is_finite = |bounds: &Aabb| bounds.min.is_finite() && bounds.max.is_finite();
-        let has_tree = lights.len() > FEW && boxes.iter().all(is_finite);
+        let has_tree = lights.len() > FEW;
+        let boxes: Vec<Aabb> = boxes.iter().map(grown).collect();
         Self {
             tree: has_tree.then(|| BoxTree::new(&boxes)),
             lights,
         }
     }
 
-    /// The lights that `ray` meets between `start` and `end`, in the order of their numbers.
-    pub fn between(&self, ray: &Ray, start: f32, end: f32) -> Vec<MetLight> {
+    /// Calls `visit` for each light that `ray` meets between `start` and `end`, in any order, until it says that it is enough.
+    fn visit(&self, ray: &Ray, start: f32, end: f32, mut visit: impl FnMut(MetLight) -> bool) {
         let meet = |&(number, light): &(u32, &Light)| {
             let (t, radiance) = light.met(ray)?;
             (t > start && t < end).then_some(MetLight {
@@ -54,18 +57,27 @@ impl<'a> LightSurfaces<'a> {
             })
         };
         let Some(tree) = &self.tree else {
-            return self.lights.iter().filter_map(meet).collect();
+            self.lights.iter().filter_map(meet).any(visit);
+            return;
         };
-        let mut met = Vec::new();
         let part = Ray {
             t_min: start,
             t_max: end,
             ..*ray
         };
-        // Where a light is met is computed in double precision, from the numbers of which its box was made.
-        tree.visit(&part, tree.slack(ray, 1.0), |index| {
-            met.extend(meet(&self.lights[index as usize]));
-            Some(end)
+        let slack = SLACK * ray.origin.abs().max_element();
+        tree.visit(&part, slack, |index| {
+            let is_enough = meet(&self.lights[index as usize]).is_some_and(&mut visit);
+            (!is_enough).then_some(end)
+        });
+    }
+
+    /// The lights that `ray` meets between `start` and `end`, in the order of their numbers.
+    pub fn between(&self, ray: &Ray, start: f32, end: f32) -> Vec<MetLight> {
+        let mut met = Vec::new();
+        self.visit(ray, start, end, |light| {
+            met.push(light);
+            false
         });
         met.sort_unstable_by_key(|light| light.number);
         met
@@ -77,10 +89,27 @@ impl<'a> LightSurfaces<'a> {
             let met = self.lights.iter().map(|(_, l)| l.is_met_by(rays, ends));
             return met.fold(0, |all, met| all | met);
         }
-        let meets = |&i: &usize| !self.between(&rays.get(i), 0.0, ends[i]).is_empty();
+        let meets = |&i: &usize| {
+            let mut is_met = false;
+            self.visit(&rays.get(i), 0.0, ends[i], |_| {
+                is_met = true;
+                true
+            });
+            is_met
+        };
         places(first_places(rays.count()))
             .filter(meets)
             .fold(0, |all, i| all | 1 << i)
+    }
+}
+
+/// A box larger by what its own coordinates may bring: far lights are not to blur those that are near.
+fn grown(bounds: &Aabb) -> Aabb {
+    let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
+    let slack = Vec3::splat(SLACK * reach);
+    Aabb {
+        min: (bounds.min - slack).max(Vec3::splat(f32::MIN)),
+        max: (bounds.max + slack).min(Vec3::splat(f32::MAX)),
     }
 }
 
@@ -95,7 +124,7 @@ pub(super) fn nearest_visible(lights: &[MetLight]) -> Option<&MetLight> {
 mod tests {
     use super::*;
     use crate::light::{DiskLight, RectangleLight, SphereLight};
-    use crate::math::{UVec2, UnitVec3, Vec3};
+    use crate::math::{UVec2, UnitVec3};
     use crate::sampling::{Pattern, Sampler, SamplingConfig};
 
     /// Random vectors with coordinates in `[-1, 1)`, and directions.
@@ -148,7 +177,15 @@ mod tests {
                 }),
             }
         };
-        (0..).zip(random(count, 1)).map(light).collect()
+        let far = Light::Sphere(SphereLight {
+            center: Vec3::new(0.0, 1e6, 3e7),
+            radius: 1e5,
+            radiance: Rgb::WHITE,
+            is_visible: true,
+            samples: 1,
+        });
+        let near = (0..).zip(random(count, 1)).map(light);
+        near.chain([far]).collect()
     }
 
     fn told(met: &[MetLight]) -> Vec<(u32, u32)> {
