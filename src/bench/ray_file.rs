@@ -99,7 +99,7 @@ pub fn write_hits(path: &Path, tree: &Bvh, set: &RaySet) -> Result<(), OutputErr
     })
 }
 
-/// The hit with which [`Bvh::any_hit`] ends.
+/// A hit, of a ray that asks whether there is one.
 fn some_hit(tree: &Bvh, ray: &Ray) -> Option<Hit> {
     let found = std::cell::Cell::new(None);
     tree.any_hit_if(ray, |hit| {

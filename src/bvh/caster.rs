@@ -72,7 +72,8 @@ pub(super) struct Caster {
     direction: [f32; 3],
     /// Box distances are `t * to_distance`; see [`unit_of_direction`].
     to_distance: f64,
-    is_ordinary: bool,
+    /// Whether its slopes are those of the ray: it is far from all overflow, and not along an axis.
+    has_own_slopes: bool,
 }
 
 /// A range of `t`, widened, in the units of box distances and of depth
@@ -140,14 +141,14 @@ impl Caster {
             ],
             direction: turned_direction,
             to_distance: slopes.unit,
-            is_ordinary: ordinary,
+            has_own_slopes: ordinary,
         })
     }
 
-    /// [`certain_depths`] of the ray; none where it is not far from all overflow.
+    /// [`certain_depths`] of the ray; none where it is near an overflow, or along an axis.
     #[inline(always)]
     pub fn certain_depths(&self, t_min: f32, t_max: f32) -> [f32; 2] {
-        if self.is_ordinary {
+        if self.has_own_slopes {
             certain_depths(t_min, t_max, self.direction[2])
         } else {
             [f32::INFINITY, f32::NEG_INFINITY]
@@ -329,4 +330,32 @@ fn way_out(origin: f32, direction: f32, bounds: &Aabb, axis: usize, slack: f32) 
     };
     let way = ahead + f64::from(f32::EPSILON) * origin.abs() + f64::from(slack);
     (way >= 0.0).then_some(way)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_main_axis_leads_and_no_other() {
+        let values = [-1.0, -0.5, 0.0, 0.5, 1.0, f32::NAN];
+        let directions = values
+            .into_iter()
+            .flat_map(|x| values.into_iter().map(move |y| [x, y]))
+            .flat_map(|[x, y]| values.into_iter().map(move |z| [x, y, z]));
+        let mut led = 0;
+        for direction in directions {
+            let is_none = direction.iter().any(|x| x.is_nan()) || direction == [0.0; 3];
+            for (main, axes) in AXES.into_iter().enumerate() {
+                let leads = leads(may_equal(main), turned(direction, axes));
+                let expected = !is_none && main_axis(direction) == main;
+                assert!(
+                    leads == expected || direction == [0.0; 3],
+                    "{direction:?}, {main}"
+                );
+                led += u32::from(leads);
+            }
+        }
+        assert!(led >= 124, "{led}");
+    }
 }

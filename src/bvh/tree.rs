@@ -272,8 +272,8 @@ impl Bvh {
         }
     }
 
-    /// With `ANY` it returns whether there is a hit that `accept` likes; with `SURE` that may be one of which it is not asked,
-    /// and `search` does not hear.
+    /// With `ANY` it returns whether there is a hit that `accept` likes. With `SURE`, too, that may be one of which `accept`,
+    /// which is to like all, is not asked, and of which `search` does not hear.
     #[inline(always)]
     fn cast_in<const ANY: bool, const SURE: bool, const W: usize, C: Counter>(
         &self,
@@ -287,6 +287,7 @@ impl Bvh {
     where
         Level: Run<W>,
     {
+        const { assert!(ANY || !SURE) };
         let Some(ray) = &Caster::new(ray, &tree.bounds, self.reach, 0.0) else {
             return false;
         };

@@ -151,7 +151,7 @@ impl Light {
         }
     }
 
-    /// Whether rays can meet the light itself.
+    /// Whether the camera sees the light itself.
     pub fn is_visible(&self) -> bool {
         match self {
             Light::Disk(light) => light.is_visible,

@@ -385,7 +385,7 @@ impl<'a> Measured<'a> {
         };
         let cost = (self.tile.rays.total() as f64 / taken(self.tile).max(1.0)).max(1.0);
         let power = STEPS_PER_OCTAVE as f32 / (1.0 + exponent as f32);
-        let weigh = |d: f32| (0.25 * factor * f64::from(d)).min(f32::MAX.into()) as f32;
+        let weigh = |d: f32| (0.25 * factor * f64::from(d)).clamp(0.0, f32::MAX.into()) as f32;
         let mut shares = Vec::with_capacity(2 * self.difficulty.len());
         let mut weights = Vec::with_capacity(2 * self.difficulty.len());
         for (taken, difficulty) in self.tile.taken.iter().zip(&self.difficulty) {

@@ -55,7 +55,7 @@ const FORECAST_SHARES: [(f64, f64); 3] = [(7.0, 0.05), (3.0, 0.25), (0.0, 0.5)];
 const LEARNING_SAMPLES: f64 = 3.0;
 
 /// What it takes, for a pixel, to find out where samples go, bytes.
-const ALLOTMENT_BYTES: usize = 128;
+const ALLOTMENT_BYTES: usize = 64;
 
 /// About what the instances that are seen in a pixel take, bytes: most pixels see one or two.
 const OBJECT_BYTES: usize = 256;
@@ -324,6 +324,7 @@ impl Run<'_> {
         let account = self.account.as_ref();
         let (done, total) = (&self.done, self.total.load(Ordering::Relaxed));
         let rows = rows(job.crop, &mut self.pixels);
+        debug_assert_eq!(rows.len(), self.tiles.len(), "each tile has its rows");
         let tiles = self.tiles.par_iter_mut().zip(rows);
         tiles.for_each(|(tile, pixels)| {
             let taken = tile.render(pixels, job, integrator, account, &stop);

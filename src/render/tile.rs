@@ -304,22 +304,23 @@ pub(super) fn pixels(job: &Job) -> Vec<Pixel> {
 
 /// The tiles of the job's part of the film, row by row.
 pub(super) fn tiles(job: &Job) -> Vec<Tile> {
-    let crop = job.crop;
-    let steps = |start: u32, length: u32| (start..start + length).step_by(TILE as usize);
-    let places: Vec<_> = steps(crop.y, crop.height)
-        .flat_map(|y| steps(crop.x, crop.width).map(move |x| (x, y)))
-        .collect();
-    let tile = |(x, y)| {
-        let rect = Rect {
-            x,
-            y,
-            width: TILE.min(crop.x + crop.width - x),
-            height: TILE.min(crop.y + crop.height - y),
-        };
-        Tile::new(rect, &job.layers)
-    };
+    let tile = |rect| Tile::new(rect, &job.layers);
     // Most of it is the system's work for memory that is new.
-    places.into_par_iter().map(tile).collect()
+    places(job.crop).into_par_iter().map(tile).collect()
+}
+
+/// Where the tiles of `film` are.
+fn places(film: Rect) -> Vec<Rect> {
+    let steps = |start: u32, length: u32| (start..start + length).step_by(TILE as usize);
+    let corners =
+        steps(film.y, film.height).flat_map(|y| steps(film.x, film.width).map(move |x| (x, y)));
+    let rect = |(x, y)| Rect {
+        x,
+        y,
+        width: TILE.min(film.x + film.width - x),
+        height: TILE.min(film.y + film.height - y),
+    };
+    corners.map(rect).collect()
 }
 
 /// The error of all tiles, summed in their order; `None` where one does not tell.
@@ -339,7 +340,7 @@ pub(super) fn rows(film: Rect, pixels: &mut [Pixel]) -> Vec<Rows<'_>> {
         let mut tiles = Vec::new();
         for row in band.chunks_mut(width) {
             let parts = row.chunks_mut(TILE as usize);
-            tiles.resize_with(parts.len(), Rows::new);
+            tiles.resize_with(parts.len(), || Rows::with_capacity(TILE as usize));
             for (tile, part) in tiles.iter_mut().zip(parts) {
                 tile.push(part);
             }
@@ -391,4 +392,41 @@ pub(super) fn assemble(
         film.cut_off.add(&tile.cut_off);
     }
     film
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_pixel_is_in_the_rows_of_its_tile() {
+        for (width, height) in [(1, 40), (40, 1), (16, 16), (35, 33), (17, 15)] {
+            let film = Rect {
+                x: 3,
+                y: 5,
+                width,
+                height,
+            };
+            // The number of each pixel is that of its samples.
+            let pixel = |number: usize| {
+                let mut pixel = Pixel::default();
+                pixel.add_samples(0, &vec![Rgb::WHITE; number + 1]);
+                pixel
+            };
+            let mut pixels: Vec<_> = (0..film.area() as usize).map(pixel).collect();
+            let tiles = places(film);
+            let rows = rows(film, &mut pixels);
+            assert_eq!(rows.len(), tiles.len());
+            let mut seen = 0;
+            for (rows, rect) in rows.iter().zip(tiles) {
+                let pixels: Vec<&Pixel> = rows.iter().flat_map(|row| row.iter()).collect();
+                assert_eq!(pixels.len() as u64, rect.area());
+                for (pixel, place) in pixels.into_iter().zip(rect.pixels()) {
+                    assert_eq!(pixel.count(), film.index(place) as u64 + 1);
+                    seen += 1;
+                }
+            }
+            assert_eq!(seen, film.area());
+        }
+    }
 }

@@ -256,8 +256,7 @@ fn directions_lead_to_the_ends_of_shadow_rays() {
     }
 }
 
-/// A camera ray towards a sample meets the light where the sample is; not from behind, and not
-/// where the light is invisible.
+/// A ray towards a sample meets the light where the sample is; not from behind.
 #[test]
 fn rays_towards_samples_see_the_light() {
     for case in cases() {

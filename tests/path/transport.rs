@@ -4,7 +4,7 @@ use std::f32::consts::PI;
 
 use halfshade::bvh::Builder;
 use halfshade::color::Rgb;
-use halfshade::integrate::{Integrator, PathTracer, RayLog, Weighing};
+use halfshade::integrate::{Integrator, PathTracer, RayLog, Weighing, Whitted};
 use halfshade::light::{
     DistantLight, Environment, Falloff, Light, RectangleLight, SphereLight, SpotLight,
 };
@@ -669,5 +669,54 @@ fn every_pattern_is_unbiased() {
     ] {
         let share = of(pattern, samples) / reference;
         assert!((share - 1.0).abs() < 0.02, "{pattern:?}: {share}");
+    }
+}
+
+/// A camera sees the lights that are visible and no others, be they few or many; a black one hides what is behind it from
+/// `whitted`, which shows lights as things, and is nothing to `path`.
+#[test]
+fn the_camera_sees_visible_lights_only() {
+    let (eye, ahead) = (Vec3::Y * 2.0, Vec3::new(0.0, 0.0, -5.0));
+    for others in [0, 30] {
+        for (is_visible, radiance) in [(true, 3.0), (false, 3.0), (true, 0.0)] {
+            let mut scene = plane();
+            scene.background.radiance = Rgb::splat(0.25);
+            let sphere = |center, radiance| {
+                Light::Sphere(SphereLight {
+                    center,
+                    radius: 1.0,
+                    radiance: Rgb::splat(radiance),
+                    is_visible,
+                    samples: 1,
+                })
+            };
+            add_light(&mut scene, sphere(eye + ahead, radiance));
+            for i in 0..others {
+                let aside = Vec3::X * (10.0 + 3.0 * i as f32);
+                add_light(&mut scene, sphere(eye + ahead + aside, 1.0));
+            }
+            let settings = path(1, 1);
+            let prepared = prepare(&scene, Builder::default()).scene;
+            let origin = prepared.placement.point(eye.as_dvec3());
+            let ray = Ray::new(origin, ahead);
+            let sampler = Sampler::new(&settings.sampling, UVec2::ZERO, 0);
+            let seen = |integrator: &dyn Integrator| {
+                integrator
+                    .radiance(&ray, &sampler, &mut RayLog::default())
+                    .g
+            };
+            let is_dark = radiance == 0.0;
+            let whitted = seen(&Whitted::new(&prepared, &settings));
+            assert_eq!(whitted, if is_visible { radiance } else { 0.25 });
+            let path = seen(&PathTracer::new(&prepared, &settings));
+            assert_eq!(
+                path,
+                if is_visible && !is_dark {
+                    radiance
+                } else {
+                    0.25
+                }
+            );
+        }
     }
 }
