@@ -94,7 +94,7 @@ impl Job<WIDTH> for Step<'_> {
     #[inline(always)]
     fn run<S: Lanes<WIDTH>>(self) -> Option<Stop> {
         let Self { nodes, ray, walk } = self;
-        walk.next::<S, false, WIDTH, _>(nodes, ray, &Boxes, &mut Silent)
+        walk.next::<S, false, WIDTH, _>(nodes, ray, &mut Boxes, &mut Silent)
     }
 }
 
@@ -105,10 +105,10 @@ impl Leaves<WIDTH> for Boxes {
     type Test<S> = ();
 
     #[inline(always)]
-    fn constants<S: Lanes<WIDTH>>(&self, _: &Caster) {}
+    fn constants<S: Lanes<WIDTH>>(&self) {}
 
     #[inline(always)]
-    fn test<S: Lanes<WIDTH>>(&self, (): &(), _: ChildRef, _: &Window) -> u32 {
+    fn test<S: Lanes<WIDTH>>(&mut self, (): &(), _: ChildRef, _: &mut Window) -> u32 {
         1
     }
 

@@ -70,6 +70,8 @@ pub(super) struct Caster {
     pub shear: [f32; 2],
     /// Direction, in the order `axes`.
     direction: [f32; 3],
+    /// One over the main component of the direction, in magnitude.
+    inverse_length: f32,
     /// Box distances are `t * to_distance`; see [`unit_of_direction`].
     to_distance: f64,
     /// Whether its slopes are those of the ray: it is far from all overflow, and not along an axis.
@@ -140,6 +142,7 @@ impl Caster {
                 turned_direction[1] * main_inverse,
             ],
             direction: turned_direction,
+            inverse_length: main_inverse.abs(),
             to_distance: slopes.unit,
             has_own_slopes: ordinary,
         })
@@ -175,6 +178,22 @@ impl Caster {
         let main = self.direction[2];
         window.far = self.distance(most) + TINY;
         window.depth[usize::from(main > 0.0)] = last_depth(t_max, main);
+    }
+
+    /// Makes `window` end where nothing that is certain to be hit farther ahead than `depth` matters. For rays
+    /// that have [`Self::certain_depths`].
+    #[inline(always)]
+    pub fn narrow_to_depth(&self, window: &mut Window, depth: f32) {
+        let main = self.direction[2];
+        // Two roundings more than in `narrow`, for which there is room.
+        window.far = depth * self.inverse_length * (1.0 + RANGE_PAD) + TINY;
+        window.depth[usize::from(main > 0.0)] = depth.copysign(main);
+    }
+
+    /// The depth ahead at which `window` ends.
+    #[inline(always)]
+    pub fn end_ahead(&self, window: &Window) -> f32 {
+        window.depth[usize::from(self.direction[2] > 0.0)].abs()
     }
 
     #[inline(always)]

@@ -1,15 +1,12 @@
 //! The triangle filter: which triangles of a block need the exact test, in `f32`, all at once.
 
-use super::caster::{Caster, Window};
+use super::caster::Caster;
 use super::layout::Block;
 use super::simd::Lanes;
 use crate::math::UNIT_ROUNDOFF;
 
 /// What the exact test takes for an edge, in units of e; with room.
 const LEAST_WEIGHT_ERROR: f32 = 1.0 / (1 << 27) as f32;
-
-/// Said of a block in the place of its triangles: no lane has this bit.
-pub(super) const CERTAIN: u32 = 1 << 31;
 
 /// Depths of crossings along the main axis, with bounds of their errors.
 ///
@@ -114,6 +111,49 @@ pub(super) struct Certain<S> {
     pub far: S,
 }
 
+/// The nearest of some crossings that are certain.
+pub(super) struct Nearest {
+    /// Which it is; `None` where none is certain to be nearer than what is known.
+    pub lane: Option<usize>,
+    /// What is certain to be less far ahead is nearer.
+    pub surely: f32,
+    /// What is certain to be farther ahead is behind it.
+    pub end: f32,
+    /// Those that are too close to another one, or to what is known, to tell.
+    pub doubtful: u32,
+}
+
+impl<S> Certain<S> {
+    /// The nearest of the crossings `among`, given bounds as in [`Nearest`] of what is known.
+    #[inline(always)]
+    pub fn nearest<const W: usize>(&self, mut among: u32, surely: f32, end: f32) -> Nearest
+    where
+        S: Lanes<W>,
+    {
+        let (mut near, mut far) = ([0.0; W], [0.0; W]);
+        self.near.store(&mut near);
+        self.far.store(&mut far);
+        let mut nearest = Nearest {
+            lane: None,
+            surely,
+            end,
+            doubtful: 0,
+        };
+        while among != 0 {
+            let lane = among.trailing_zeros() as usize % W;
+            among &= among - 1;
+            if far[lane] < nearest.surely {
+                nearest.lane = Some(lane);
+                nearest.surely = near[lane];
+                nearest.end = far[lane];
+            } else if near[lane] <= nearest.end {
+                nearest.doubtful |= 1 << lane;
+            }
+        }
+        nearest
+    }
+}
+
 impl<S> Seen<S> {
     /// Those of the lanes in `among` whose ray is not certain to miss its triangle at these depths: a superset of what the
     /// exact test accepts there.
@@ -181,6 +221,20 @@ impl<S> Seen<S> {
     }
 }
 
+/// The corners of a block's triangles, their coordinates in the order `axes`.
+#[inline(always)]
+pub(super) fn corners_in<S: Lanes<W>, const W: usize>(
+    block: &Block<W>,
+    [x, y, z]: [usize; 3],
+) -> [[S; 3]; 3] {
+    let [a, b, c] = &block.corners;
+    [
+        [S::load(&a[x]), S::load(&a[y]), S::load(&a[z])],
+        [S::load(&b[x]), S::load(&b[y]), S::load(&b[z])],
+        [S::load(&c[x]), S::load(&c[y]), S::load(&c[z])],
+    ]
+}
+
 /// The constants for the triangle filter, in vectors: of one ray for several triangles, or of several rays
 /// that have their order of axes in common.
 pub(super) struct Filter<S> {
@@ -206,43 +260,6 @@ impl<S> Filter<S> {
             shear: [S::splat(ray.shear[0]), S::splat(ray.shear[1])],
             is_reversed: ray.towards_lower[ray.axes[2]],
         }
-    }
-
-    /// The triangles of `block` that [`Seen::candidates`] are, but for those behind the origin. With `SURE` it is
-    /// [`CERTAIN`] where the exact test accepts one for certain, between these depths ahead.
-    #[inline(always)]
-    pub fn test<const SURE: bool, const W: usize>(
-        &self,
-        block: &Block<W>,
-        count: u32,
-        window: &Window,
-        [begin, end]: [f32; 2],
-    ) -> u32
-    where
-        S: Lanes<W>,
-    {
-        let [x, y, z] = self.axes;
-        let [a, b, c] = &block.corners;
-        let corners = [
-            [S::load(&a[x]), S::load(&a[y]), S::load(&a[z])],
-            [S::load(&b[x]), S::load(&b[y]), S::load(&b[z])],
-            [S::load(&c[x]), S::load(&c[y]), S::load(&c[z])],
-        ];
-        let depths = [S::splat(window.depth[0]), S::splat(window.depth[1])];
-        let seen = self.see(&corners);
-        let lanes = seen.candidates(depths, u32::MAX >> (32 - count));
-        if lanes == 0 {
-            return 0;
-        }
-        if SURE {
-            let certain = seen.certain(self.is_reversed);
-            let begins = S::splat(begin).lt(certain.near);
-            let ends = certain.far.lt(S::splat(end));
-            if lanes & certain.lanes & begins & ends != 0 {
-                return CERTAIN;
-            }
-        }
-        lanes & !self.certainly_behind(&corners, &seen)
     }
 
     /// The triangles that lie behind the origin of the ray for certain: such as the one that it starts on, a few roundings above.

@@ -16,6 +16,7 @@ mod hit;
 mod layout;
 mod packet;
 mod simd;
+mod single;
 mod stats;
 mod traverse;
 mod tree;

@@ -97,9 +97,14 @@ pub(super) trait Leaves<const W: usize> {
     type Test<S>;
     /// Makes them. As all of these functions `#[inline(always)]`: one of its own, such as a
     /// closure may become, would lack the instruction set of the walk.
-    fn constants<S: Lanes<W>>(&self, ray: &Caster) -> Self::Test<S>;
-    /// Which things in `leaf` may be hit within `window`: where there are any the walk pauses.
-    fn test<S: Lanes<W>>(&self, test: &Self::Test<S>, leaf: ChildRef, window: &Window) -> u32;
+    fn constants<S: Lanes<W>>(&self) -> Self::Test<S>;
+    /// Which things in `leaf` may be hit within `window`, which it may narrow: where there are any the walk pauses.
+    fn test<S: Lanes<W>>(
+        &mut self,
+        test: &Self::Test<S>,
+        leaf: ChildRef,
+        window: &mut Window,
+    ) -> u32;
     /// Is told that `leaf` will be visited soon.
     fn announce(&self, leaf: ChildRef);
 }
@@ -118,7 +123,7 @@ pub(super) struct Stop {
 /// does not crowd the loop's constants out of the registers.
 pub(super) struct Walk {
     stack: Stack,
-    /// Where hits still matter. To be narrowed in a pause.
+    /// Where hits still matter. To be narrowed at leaves and in a pause.
     pub window: Window,
 }
 
@@ -139,15 +144,15 @@ impl Walk {
         &mut self,
         nodes: &[Node<W>],
         ray: &Caster,
-        leaves: &L,
+        leaves: &mut L,
         counter: &mut impl Counter,
     ) -> Option<Stop>
     where
         S: Lanes<W>,
     {
         let boxes = BoxTest::<S>::new(ray);
-        let test = leaves.constants::<S>(ray);
-        let (near, far) = (S::splat(self.window.near), S::splat(self.window.far));
+        let test = leaves.constants::<S>();
+        let near = S::splat(self.window.near);
         let stack = &mut self.stack;
         loop {
             let mut current = loop {
@@ -156,6 +161,7 @@ impl Walk {
                     break entry.child();
                 }
             };
+            let far = S::splat(self.window.far);
             while !current.is_leaf() {
                 counter.node();
                 let node = &nodes[current.index()];
@@ -171,7 +177,7 @@ impl Walk {
             }
             if current.is_leaf() {
                 counter.leaf();
-                let lanes = leaves.test(&test, current, &self.window);
+                let lanes = leaves.test(&test, current, &mut self.window);
                 if lanes != 0 {
                     return Some(Stop {
                         leaf: current,
