@@ -64,17 +64,15 @@ where
                 if ANY && SURE && matches!(&stop, Some(stop) if stop.lanes == CERTAIN) {
                     return true;
                 }
-                let mut look = |block: usize, lanes: u32| {
-                    let block = &tree.blocks[block];
-                    self.look::<ANY>(block, lanes, ray, search, accept, counter)
-                };
-                if let Some(place) = held.place.take() {
-                    look(place / W, 1 << (place % W));
+                if let Some(place) = held.place {
+                    counter.triangle();
+                    self.keep(&tree.blocks[place / W], place % W, ray, search);
                 }
                 let Some(stop) = stop else {
                     return false;
                 };
-                if look(stop.leaf.index(), stop.lanes) {
+                let block = &tree.blocks[stop.leaf.index()];
+                if self.look::<ANY>(block, stop.lanes, ray, search, accept, counter) {
                     return true;
                 }
                 ray.narrow(&mut walk.window, search.t_best);
@@ -87,6 +85,15 @@ where
         // All blocks in turn.
         let mut blocks = (0..tree.triangles).step_by(W).enumerate();
         blocks.any(|(block, first)| seek(ChildRef::leaf(block, W.min(tree.triangles - first))))
+    }
+
+    /// Makes the triangle in a lane of a block, which was held, what is found.
+    #[inline(always)]
+    fn keep(&self, block: &Block<W>, lane: usize, ray: &Caster, search: &mut Search) {
+        let crossing = ray.exact().cross_certain(&block.corners_of(lane, ray.axes));
+        let hit = Hit::of(crossing, self.instance, block.triangles[lane]);
+        debug_assert!(search.is_better(hit.t, hit.key()));
+        search.keep(hit);
     }
 
     /// The exact test of some triangles of a block.

@@ -212,7 +212,7 @@ impl Packet<'_> {
             return self.look::<ANY, W>(corners, triangle, group, lanes);
         }
         let [a, b, c] = corners;
-        let crossings = self.cross::<W>(&[all(a), all(b), all(c)], group);
+        let crossings = self.cross::<false, W>(&[all(a), all(b), all(c)], group);
         let mut is_found = false;
         let mut hits = lanes & crossings.is_hit;
         while hits != 0 {
