@@ -6,7 +6,7 @@
 use super::caster::{Caster, Window};
 use super::count::Counter;
 use super::layout::{ChildRef, Node};
-use super::simd::{Entry, Lanes, Stack, prefetch};
+use super::simd::{Entry, Lanes, Stack, Waiting, prefetch};
 
 /// A ray's constants for the box test, in vectors.
 struct BoxTest<S> {
@@ -122,7 +122,7 @@ pub(super) struct Stop {
 /// It pauses so that what is done there, which is scalar and much longer, is compiled apart and
 /// does not crowd the loop's constants out of the registers.
 pub(super) struct Walk {
-    stack: Stack,
+    waiting: Waiting,
     /// Where hits still matter. To be narrowed at leaves and in a pause.
     pub window: Window,
 }
@@ -131,9 +131,11 @@ impl Walk {
     /// From `root` down.
     #[inline(always)]
     pub fn new(root: ChildRef, window: Window) -> Self {
-        let mut stack = Stack::new();
+        let mut waiting = Waiting::new();
+        let mut stack = waiting.stack();
         stack.push(Entry::new(window.near, root));
-        Self { stack, window }
+        stack.keep();
+        Self { waiting, window }
     }
 
     /// Goes on to the next leaf that has something in it; `None` at the end.
@@ -153,7 +155,7 @@ impl Walk {
         let boxes = BoxTest::<S>::new(ray);
         let test = leaves.constants::<S>();
         let near = S::splat(self.window.near);
-        let stack = &mut self.stack;
+        let mut stack = self.waiting.stack();
         loop {
             let mut current = loop {
                 let entry = stack.pop()?;
@@ -170,7 +172,7 @@ impl Walk {
                     leaf if leaf.is_leaf() => leaves.announce(leaf),
                     child => prefetch(nodes, child.index()),
                 };
-                match nearest_child::<S, ANY, W>(node, mask, enter, stack, announce) {
+                match nearest_child::<S, ANY, W>(node, mask, enter, &mut stack, announce) {
                     Some(child) => current = child,
                     None => break,
                 }
@@ -179,6 +181,7 @@ impl Walk {
                 counter.leaf();
                 let lanes = leaves.test(&test, current, &mut self.window);
                 if lanes != 0 {
+                    stack.keep();
                     return Some(Stop {
                         leaf: current,
                         lanes,
@@ -197,7 +200,7 @@ pub(super) fn nearest_child<S, const ANY: bool, const W: usize>(
     node: &Node<W>,
     mask: u32,
     enter: S,
-    stack: &mut Stack,
+    stack: &mut Stack<'_>,
     announce: impl Fn(Entry),
 ) -> Option<ChildRef>
 where
