@@ -106,7 +106,7 @@ impl Caster {
         let (from, along) = (Vec3A::from(ray.origin), Vec3A::from(ray.direction));
         let size = along.abs();
         let main = longest(size.to_array());
-        let length = size[main];
+        let length = size.max_element();
         // Written so that a NaN is not ordinary.
         let ordinary = is_ordinary_length(length, reach)
             & from.abs().cmple(Vec3A::splat(ORDINARY_COORDINATE)).all()

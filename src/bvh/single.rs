@@ -47,7 +47,16 @@ where
         let Some(ray) = &Caster::new(ray, &tree.bounds, self.reach, 0.0) else {
             return false;
         };
-        let mut seek = |root: ChildRef| {
+        // Without nodes all blocks in turn.
+        let walks = match tree.nodes.is_empty() {
+            true => tree.triangles.div_ceil(W),
+            false => 1,
+        };
+        for i in 0..walks {
+            let root = match tree.nodes.is_empty() {
+                true => ChildRef::leaf(i, W.min(tree.triangles - i * W)),
+                false => ChildRef::node(0),
+            };
             let mut walk = Walk::new(root, ray.window(search.t_min, search.t_best));
             let mut held = Held::better_than::<SURE>(search, ray);
             loop {
@@ -69,7 +78,7 @@ where
                     self.keep(&tree.blocks[place / W], place % W, ray, search);
                 }
                 let Some(stop) = stop else {
-                    return false;
+                    break;
                 };
                 let block = &tree.blocks[stop.leaf.index()];
                 if self.look::<ANY>(block, stop.lanes, ray, search, accept, counter) {
@@ -78,13 +87,8 @@ where
                 ray.narrow(&mut walk.window, search.t_best);
                 held = Held::better_than::<SURE>(search, ray);
             }
-        };
-        if !tree.nodes.is_empty() {
-            return seek(ChildRef::node(0));
         }
-        // All blocks in turn.
-        let mut blocks = (0..tree.triangles).step_by(W).enumerate();
-        blocks.any(|(block, first)| seek(ChildRef::leaf(block, W.min(tree.triangles - first))))
+        false
     }
 
     /// Makes the triangle in a lane of a block, which was held, what is found.

@@ -229,18 +229,21 @@ impl Bvh {
         }
     }
 
+    #[inline(always)]
     fn first_hit(&self, ray: &Ray, counter: &mut impl Counter) -> Option<Hit> {
         let mut search = Search::new(ray.t_min, ray.t_max);
         self.look_for::<false, _>(ray, &mut search, counter);
         search.hit
     }
 
+    #[inline(always)]
     fn is_blocked(&self, ray: &Ray, counter: &mut impl Counter) -> bool {
         let mut search = Search::new(ray.t_min, ray.t_max);
         self.look_for::<true, _>(ray, &mut search, counter)
     }
 
     /// Looks for any hit, or for one better than that of `search`, whatever it is.
+    #[inline(always)]
     fn look_for<const ANY: bool, C: Counter>(
         &self,
         ray: &Ray,
@@ -251,6 +254,7 @@ impl Bvh {
     }
 
     /// See [`Target::search`].
+    #[inline(always)]
     pub(super) fn cast<const ANY: bool, const SURE: bool, C: Counter>(
         &self,
         ray: &Ray,
