@@ -20,7 +20,7 @@ pub struct BoxTree {
     /// What box is at each leaf of `nodes`.
     leaves: Vec<u32>,
     bounds: Aabb,
-    /// Largest magnitude of a coordinate of `bounds`.
+    /// That of `bounds`, [`Aabb::reach`].
     reach: f32,
     level: Level,
 }
@@ -34,7 +34,7 @@ impl BoxTree {
             nodes,
             leaves,
             bounds,
-            reach: bounds.min.abs().max(bounds.max.abs()).max_element(),
+            reach: bounds.reach(),
             level: Level::best(),
         }
     }
@@ -49,7 +49,7 @@ impl BoxTree {
         self.nodes.capacity() * size_of::<Node<WIDTH>>() + self.leaves.capacity() * size_of::<u32>()
     }
 
-    /// Largest magnitude of a coordinate of [`Self::bounds`].
+    /// That of [`Self::bounds`], [`Aabb::reach`].
     pub fn reach(&self) -> f32 {
         self.reach
     }
