@@ -68,13 +68,18 @@ impl BoxTree {
             (true, true) => return,
         };
         let mut walk = Walk::new(root, caster.window(ray.t_min, ray.t_max));
+        let mut end = ray.t_max;
         while let Some(stop) = self.level.run(Step {
             nodes: &self.nodes,
             ray: &caster,
             walk: &mut walk,
         }) {
             match visit(self.leaves[stop.leaf.index()]) {
-                Some(t_max) => caster.narrow(&mut walk.window, t_max),
+                Some(t_max) if t_max != end => {
+                    end = t_max;
+                    caster.narrow(&mut walk.window, end);
+                }
+                Some(_) => {}
                 None => return,
             }
         }
