@@ -10,7 +10,7 @@ use exr::prelude::{
 };
 
 #[cfg(feature = "exr")]
-use super::exr_room::check_exr_size;
+use super::exr_file::check_exr_size;
 use super::{ImportError, files, images};
 use crate::color::{Rgb, srgb8_to_linear};
 use crate::light::Environment;

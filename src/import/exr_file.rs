@@ -1,6 +1,7 @@
-//! Whether the bytes of an OpenEXR file can hold the pixels that its header claims: memory is asked for by that.
+//! Whether the bytes of a file can hold the pixels that its header claims: memory is asked for by that.
 
 use exr::compression::Compression;
+use exr::math::Vec2;
 use exr::meta::attribute::SampleType;
 use exr::meta::header::Header;
 use thiserror::Error;
@@ -12,7 +13,7 @@ const DEFLATE: u64 = 1032;
 
 /// More pixels than there can be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-pub enum ExrSizeError {
+pub enum SizeError {
     /// More than a picture may have.
     #[error("{width} × {height} pixels are more than {MAX_PIXELS}")]
     TooLarge {
@@ -33,26 +34,36 @@ pub enum ExrSizeError {
     },
 }
 
-/// Holds all parts of a file of so many `bytes` to what that can hold.
+/// Holds a picture of `width` × `height` pixels to what there may be, and to the `most` that a file of so many `bytes` can
+/// hold.
+///
+/// # Errors
+/// Where it has more.
+pub fn check_size([width, height]: [u64; 2], most: u64, bytes: u64) -> Result<(), SizeError> {
+    let pixels = width.saturating_mul(height);
+    if pixels > MAX_PIXELS {
+        return Err(SizeError::TooLarge { width, height });
+    }
+    if pixels > most {
+        return Err(SizeError::TooShort {
+            width,
+            height,
+            bytes,
+        });
+    }
+    Ok(())
+}
+
+/// Holds all parts of an OpenEXR file of so many `bytes` to what that can hold.
 ///
 /// # Errors
 /// Where one claims more.
-pub fn check_exr_size(headers: &[Header], bytes: u64) -> Result<(), ExrSizeError> {
-    for header in headers {
-        let (width, height) = (header.layer_size.0 as u64, header.layer_size.1 as u64);
-        let pixels = width.saturating_mul(height);
-        if pixels > MAX_PIXELS {
-            return Err(ExrSizeError::TooLarge { width, height });
-        }
-        if pixels > most_pixels(header, bytes) {
-            return Err(ExrSizeError::TooShort {
-                width,
-                height,
-                bytes,
-            });
-        }
-    }
-    Ok(())
+pub fn check_exr_size(headers: &[Header], bytes: u64) -> Result<(), SizeError> {
+    headers.iter().try_for_each(|header| {
+        let Vec2(width, height) = header.layer_size;
+        let size = [width as u64, height as u64];
+        check_size(size, most_pixels(header, bytes), bytes)
+    })
 }
 
 /// The most pixels that a part with this `header` can have in so many `bytes`.
