@@ -1,9 +1,12 @@
-//! Whether the bytes of a file can hold the pixels that its header claims: memory is asked for by that.
+//! OpenEXR files: their colours, and whether their bytes can hold the pixels that a header claims, by which memory is
+//! asked for.
+
+use std::io::{Read, Seek};
 
 use exr::compression::Compression;
-use exr::math::Vec2;
 use exr::meta::attribute::SampleType;
 use exr::meta::header::Header;
+use exr::prelude::{ReadChannels, ReadLayers, ReadSpecificChannel, Vec2, read};
 use thiserror::Error;
 
 use crate::scene::MAX_PIXELS;
@@ -64,6 +67,34 @@ pub fn check_exr_size(headers: &[Header], bytes: u64) -> Result<(), SizeError> {
         let size = [width as u64, height as u64];
         check_size(size, most_pixels(header, bytes), bytes)
     })
+}
+
+/// Columns and rows of the first layer of `file` with the channels R, G and B, and their values row by row. The headers
+/// have been checked ([`check_exr_size`]).
+///
+/// # Errors
+/// Where there is none, or the decoder does not accept it.
+pub fn read_exr_colors<C: Copy + From<[f32; 3]> + 'static>(
+    file: impl Read + Seek,
+) -> exr::error::Result<([u32; 2], Vec<C>)> {
+    let image = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .specific_channels()
+        .required("R")
+        .required("G")
+        .required("B")
+        .collect_pixels(
+            |size, _| (size, vec![C::from([0.0; 3]); size.area()]),
+            |(size, pixels), Vec2(x, y), (r, g, b): (f32, f32, f32)| {
+                pixels[y * size.width() + x] = [r, g, b].into();
+            },
+        )
+        .first_valid_layer()
+        .all_attributes()
+        .from_buffered(file)?;
+    let (Vec2(width, height), pixels) = image.layer_data.channel_data.pixels;
+    Ok(([width as u32, height as u32], pixels))
 }
 
 /// The most pixels that a part with this `header` can have in so many `bytes`.

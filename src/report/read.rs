@@ -18,7 +18,7 @@ use thiserror::Error;
 
 use super::Picture;
 use crate::color::{Rgb, srgb_to_linear, srgb8_to_linear};
-use crate::import::{SizeError, check_exr_size, check_size};
+use crate::import::{SizeError, check_exr_size, check_size, read_exr_colors};
 use crate::math::UVec2;
 use crate::scene::MAX_PIXELS;
 
@@ -170,22 +170,11 @@ fn exr(mut file: BufReader<File>, bytes: u64) -> Result<Opened, ReadProblem> {
 }
 
 fn colors(file: BufReader<File>) -> Result<Picture, ReadProblem> {
-    let image = read_exr()
-        .no_deep_data()
-        .largest_resolution_level()
-        .specific_channels()
-        .required("R")
-        .required("G")
-        .required("B")
-        .collect_pixels(
-            |size, _| black(size),
-            |picture, at, (r, g, b): (f32, f32, f32)| put(picture, at, Rgb::new(r, g, b)),
-        )
-        .first_valid_layer()
-        .all_attributes()
-        .from_buffered(file)
-        .map_err(exr_problem)?;
-    Ok(image.layer_data.channel_data.pixels)
+    let ([width, height], pixels) = read_exr_colors(file).map_err(exr_problem)?;
+    Ok(Picture {
+        size: UVec2::new(width, height),
+        pixels,
+    })
 }
 
 fn greys(file: BufReader<File>) -> Result<Picture, ReadProblem> {
@@ -195,26 +184,20 @@ fn greys(file: BufReader<File>) -> Result<Picture, ReadProblem> {
         .specific_channels()
         .required("Y")
         .collect_pixels(
-            |size, _| black(size),
-            |picture, at, (y,): (f32,)| put(picture, at, Rgb::splat(y)),
+            |Vec2(width, height), _| Picture {
+                // Within MAX_PIXELS: the header was checked.
+                size: UVec2::new(width as u32, height as u32),
+                pixels: vec![Rgb::BLACK; width * height],
+            },
+            |picture, Vec2(x, y), (grey,): (f32,)| {
+                picture.pixels[y * picture.size.x as usize + x] = Rgb::splat(grey);
+            },
         )
         .first_valid_layer()
         .all_attributes()
         .from_buffered(file)
         .map_err(exr_problem)?;
     Ok(image.layer_data.channel_data.pixels)
-}
-
-fn black(Vec2(width, height): Vec2<usize>) -> Picture {
-    // Within MAX_PIXELS: the header was checked.
-    Picture {
-        size: UVec2::new(width as u32, height as u32),
-        pixels: vec![Rgb::BLACK; width * height],
-    }
-}
-
-fn put(picture: &mut Picture, Vec2(x, y): Vec2<usize>, color: Rgb) {
-    picture.pixels[y * picture.size.x as usize + x] = color;
 }
 
 fn is_rec_709(c: &Chromaticities) -> bool {

@@ -268,7 +268,10 @@ fn a_file_cannot_claim_more_pixels_than_its_bytes_can_hold() {
         );
         let message = error.to_string();
         assert!(message.starts_with("says that it has "), "{message}");
-        assert!(message.contains(" pixels, which do not fit into its "), "{message}");
+        assert!(
+            message.contains(" pixels, which do not fit into its "),
+            "{message}"
+        );
     }
 }
 
