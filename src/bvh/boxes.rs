@@ -20,7 +20,7 @@ pub struct BoxTree {
     /// What box is at each leaf of `nodes`.
     leaves: Vec<u32>,
     bounds: Aabb,
-    /// Largest magnitude of a coordinate of `bounds`.
+    /// That of `bounds`, [`Aabb::reach`].
     reach: f32,
     level: Level,
 }
@@ -34,7 +34,7 @@ impl BoxTree {
             nodes,
             leaves,
             bounds,
-            reach: bounds.min.abs().max(bounds.max.abs()).max_element(),
+            reach: bounds.reach(),
             level: Level::best(),
         }
     }
@@ -49,7 +49,7 @@ impl BoxTree {
         self.nodes.capacity() * size_of::<Node<WIDTH>>() + self.leaves.capacity() * size_of::<u32>()
     }
 
-    /// Largest magnitude of a coordinate of [`Self::bounds`].
+    /// That of [`Self::bounds`], [`Aabb::reach`].
     pub fn reach(&self) -> f32 {
         self.reach
     }
@@ -68,13 +68,18 @@ impl BoxTree {
             (true, true) => return,
         };
         let mut walk = Walk::new(root, caster.window(ray.t_min, ray.t_max));
+        let mut end = ray.t_max;
         while let Some(stop) = self.level.run(Step {
             nodes: &self.nodes,
             ray: &caster,
             walk: &mut walk,
         }) {
             match visit(self.leaves[stop.leaf.index()]) {
-                Some(t_max) => caster.narrow(&mut walk.window, t_max),
+                Some(t_max) if t_max != end => {
+                    end = t_max;
+                    caster.narrow(&mut walk.window, end);
+                }
+                Some(_) => {}
                 None => return,
             }
         }

@@ -99,8 +99,7 @@ impl Bvh {
             Body::Eight(tree) => tree.prefer_large_pages(),
             Body::Sixteen(tree) => tree.prefer_large_pages(),
         }
-        let bounds = bvh.bounds();
-        bvh.reach = bounds.min.abs().max(bounds.max.abs()).max_element();
+        bvh.reach = bvh.bounds().reach();
         bvh
     }
 
