@@ -341,7 +341,7 @@ impl<'a> Measured<'a> {
         difficulty: &Difficulty,
         exponent: f64,
     ) -> Self {
-        let (mut error, mut model, mut squares) = (0.0, 0.0, 0.0);
+        let (mut model, mut squares) = (0.0, 0.0);
         let mut of_tile = Vec::with_capacity(tile.taken.len());
         let mut fall = Fall::new(exponent);
         for (place, &taken) in tile.rect().pixels().zip(&tile.taken) {
@@ -352,11 +352,16 @@ impl<'a> Measured<'a> {
                 .zip(taken)
                 .map(|(&d, n)| 0.25 * f64::from(d) * fall.to(n.max(1)))
                 .sum();
-            error += pixels[i].relative_squared_error().unwrap_or(0.0);
             model += expected;
             squares += expected * expected;
             of_tile.push(of);
         }
+        // The sums of a tile say it, but where a pixel has nothing to say.
+        let error_of = |place| pixels[film.index(place)].relative_squared_error();
+        let error = match &tile.error {
+            Some(sums) => sums.sum(),
+            None => tile.rect().pixels().filter_map(error_of).sum(),
+        };
         Self {
             tile,
             difficulty: of_tile,
