@@ -32,7 +32,12 @@ fn agreed(trees: &[(String, Bvh)], ray: &Ray) -> Option<Hit> {
             "{name} against {}: {ray:?}",
             trees[0].0
         );
-        assert_eq!(tree.any_hit(ray), hit.is_some(), "any hit, {name}: {ray:?}");
+        // Where somebody is to be asked no hit is held without the exact test.
+        let asked = tree.closest_hit_if(ray, |_| true);
+        assert_eq!(bits(asked), bits(hit), "asked, {name}: {ray:?}");
+        for any in [tree.any_hit(ray), tree.any_hit_if(ray, |_| true)] {
+            assert_eq!(any, hit.is_some(), "any hit, {name}: {ray:?}");
+        }
     }
     hit
 }

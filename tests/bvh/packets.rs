@@ -27,12 +27,15 @@ fn check_in(tree: &Bvh, rays: &[Ray], name: &str) -> f64 {
         .unzip();
     for (i, ray) in rays.iter().enumerate() {
         let alone = tree.closest_hit(ray);
+        let asked = tree.closest_hit_if(ray, |_| true);
         // `Debug` shows every bit of a float.
-        assert_eq!(
-            format!("{:?}", hits[i]),
-            format!("{alone:?}"),
-            "{name}, ray {i}: {ray:?}"
-        );
+        for hit in [hits[i], asked] {
+            assert_eq!(
+                format!("{hit:?}"),
+                format!("{alone:?}"),
+                "{name}, ray {i}: {ray:?}"
+            );
+        }
         assert_eq!(blocked[i], alone.is_some(), "{name}, ray {i}: {ray:?}");
     }
     hits.iter().flatten().count() as f64 / rays.len() as f64
