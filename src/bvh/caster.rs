@@ -189,7 +189,8 @@ impl Caster {
     #[inline(always)]
     pub fn narrow_to_depth(&self, window: &mut Window, depth: f32) {
         let main = self.direction[2];
-        // Two roundings more than in `narrow`, for which there is room.
+        // Two roundings more than in `narrow`, for which there is room. The depth itself has room already: crossings beyond
+        // it have greater parameters, rounded as they are (see `Seen::certain`).
         window.far = depth * self.inverse_length * (1.0 + RANGE_PAD) + TINY;
         window.depth[usize::from(main > 0.0)] = depth.copysign(main);
     }

@@ -1,4 +1,5 @@
-//! The triangle filter: which triangles of a block need the exact test, in `f32`, all at once.
+//! The triangle filter: which triangles of a block need the exact test, and which are hit for certain, in `f32`, all at
+//! once.
 
 use super::caster::Caster;
 use super::layout::Block;
@@ -181,8 +182,11 @@ impl<S> Seen<S> {
     /// the point at its t is in the triangle's box but for 2u|t d|. The true crossing is in that box, and t is off by
     /// at most u for rounding and by 3E(1 + Z/h)/A + 4ε Z/h, relatively, for the sums
     /// behind it, at the depth h: less than u/2 where A h > 2eZ, which is asked for here.
+    /// It then is above 2^-49 Z by far, where the test takes it for 0, and the signs of the edge functions are those
+    /// that the test finds: there is nothing to clamp.
     ///
-    /// The depth h = z₁ + f(z₁)/A is off by at most 10eD/A + 24uZ.
+    /// The depth h = z₁ + f(z₁)/A is off by at most 10eD/A + 24uZ. What is told has 16eD/A + 64uZ: so much more that crossings
+    /// apart by it have parameters that differ when they are rounded, too. Where the sum for h overflows nothing is certain.
     #[inline(always)]
     pub fn certain<const W: usize>(&self, is_reversed: bool) -> Certain<S>
     where
@@ -203,12 +207,13 @@ impl<S> Seen<S> {
             S::splat(4.0),
             self.reach.mul(S::splat(64.0 * UNIT_ROUNDOFF)),
         );
-        let near = ahead.sub(off);
+        let (near, far) = (ahead.sub(off), ahead.add(off));
         let least_beyond = twice_error.mul_add(self.reach, S::splat(f32::MIN_POSITIVE));
+        let is_ahead = least_beyond.lt(depth.area.mul(near)) & far.lt(S::splat(f32::INFINITY));
         Certain {
-            lanes: is_inside & least_beyond.lt(depth.area.mul(near)),
+            lanes: is_inside & is_ahead,
             near,
-            far: ahead.add(off),
+            far,
         }
     }
 
@@ -357,4 +362,91 @@ fn edge<S: Lanes<W>, const W: usize>(p: [S; 3], q: [S; 3]) -> S {
 #[inline(always)]
 fn splat<S: Lanes<W>, const W: usize>(v: [f32; 3]) -> [S; 3] {
     [S::splat(v[0]), S::splat(v[1]), S::splat(v[2])]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bvh::simd::Portable;
+    use crate::bvh::triangle::ExactRays;
+    use crate::math::{Aabb, Ray, Vec3};
+
+    const WIDTH: usize = 8;
+
+    /// A linear congruential generator.
+    struct Random(u64);
+
+    impl Random {
+        /// In [-1, 1).
+        fn number(&mut self) -> f32 {
+            self.0 = self.0.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(1);
+            (self.0 >> 40) as f32 / (1u64 << 23) as f32 - 1.0
+        }
+
+        fn point(&mut self) -> Vec3 {
+            Vec3::new(self.number(), self.number(), self.number())
+        }
+    }
+
+    /// Triangles of all shapes and sizes, and a ray through one of them.
+    fn some(random: &mut Random, round: usize) -> (Block<WIDTH>, Ray) {
+        let scale = 2f32.powi([0, -60, -20, 20, 42, 43, 44, 49][round % 8]);
+        let width = [1.0, 1e-2, 1e-4, 1e-6][round / 8 % 4];
+        let mut block = Block::EMPTY;
+        let mut target = Vec3::ZERO;
+        for lane in 0..WIDTH {
+            let (a, b) = (random.point(), random.point());
+            let c = a + 0.5 * (b - a) + width * random.point();
+            target = a + 0.25 * (b - a) + random.number().abs().powi(8) * 0.5 * (c - a);
+            let corners = [a, b, c].map(|p| (scale * p).to_array());
+            block.set(lane, &corners, lane as u32);
+        }
+        let origin = 2.0 * random.point();
+        let length = 2f32.powi(7 * (round / 32 % 7) as i32 - 21);
+        (block, Ray::new(scale * origin, length * (target - origin)))
+    }
+
+    #[test]
+    fn what_is_certain_is_what_the_exact_test_finds() {
+        let mut random = Random(7);
+        let mut known = 0;
+        for round in 0..20_000 {
+            let (block, ray) = some(&mut random, round);
+            let points = block.corners.iter().flat_map(|[x, y, z]| {
+                let point = |i: usize| Vec3::new(x[i], y[i], z[i]);
+                (0..WIDTH).map(point)
+            });
+            let bounds = Aabb::of_points(points);
+            let caster = Caster::new(&ray, &bounds, bounds.reach(), 0.0);
+            let Some(caster) = caster else { continue };
+            let filter = Filter::<Portable<WIDTH>>::new(&caster);
+            let certain = filter
+                .see(&corners_in(&block, filter.axes))
+                .certain(filter.is_reversed);
+            let (mut near, mut far) = ([0.0; WIDTH], [0.0; WIDTH]);
+            certain.near.store(&mut near);
+            certain.far.store(&mut far);
+            let turned = |v: Vec3| filter.axes.map(|k| [v[k]; WIDTH]);
+            let (origins, directions) = (turned(ray.origin), turned(ray.direction));
+            let corners = block.corners.map(|rows| filter.axes.map(|k| rows[k]));
+            let rays = ExactRays {
+                origin: origins.each_ref(),
+                direction: directions.each_ref(),
+            };
+            let (asked, told) = (rays.cross::<false>(&corners), rays.cross::<true>(&corners));
+            let main = f64::from(ray.direction[filter.axes[2]].abs());
+            for lane in (0..WIDTH).filter(|lane| certain.lanes >> lane & 1 != 0) {
+                let corners = block.corners_of(lane, filter.axes);
+                let crossing = caster.exact().cross_certain(&corners);
+                assert_eq!(caster.exact().cross(&corners), Some(crossing), "{ray:?}");
+                assert!(asked.is_hit >> lane & 1 != 0, "{ray:?}");
+                assert_eq!(asked.get(lane), crossing);
+                assert_eq!(told.get(lane), crossing);
+                let depth = f64::from(crossing.t) * main;
+                assert!(f64::from(near[lane]) < depth && depth < f64::from(far[lane]));
+                known += 1;
+            }
+        }
+        assert!(known > 5000, "{known}");
+    }
 }

@@ -13,7 +13,7 @@ use super::simd::{Job, Lanes, Level, Run, prefetch};
 use super::traverse::{Leaves, Stop, Walk};
 use crate::math::Ray;
 
-/// Said of a block in the place of its triangles: one is hit for certain, and any will do. No lane has this bit.
+/// Said of a block in the place of its triangles, where any hit will do: one is certain. No lane has this bit.
 const CERTAIN: u32 = 1 << 31;
 
 /// What a ray goes through.

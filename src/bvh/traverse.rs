@@ -138,7 +138,7 @@ impl Walk {
         Self { waiting, window }
     }
 
-    /// Goes on to the next leaf that has something in it; `None` at the end.
+    /// Goes on to the next leaf that has something in it; `None` at the end, which ends the walk for good.
     ///
     /// With `ANY` children are not sorted beyond the first two.
     #[inline(always)]

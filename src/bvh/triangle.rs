@@ -5,7 +5,7 @@
 //! ray starts at the origin and sheared so that it runs along one axis; signs of three 2D edge
 //! functions then tell whether the ray passes inside. Two triangles that share an edge compute
 //! the same edge function up to its sign, so a ray cannot slip between them. Everything faster
-//! in the tracing core only has to let through what this test accepts.
+//! in the tracing core only has to let through what this test accepts, or to know for certain that it does.
 //!
 //! What runs for each triangle is `#[inline(always)]` and free of `array::map`, which the
 //! compiler leaves as a call (with its copies) inside of functions of another instruction set.
@@ -172,7 +172,7 @@ pub(super) struct Crossings<const W: usize> {
     pub t: [f32; W],
     pub u: [f32; W],
     pub v: [f32; W],
-    /// A bit for each ray that crosses; none of those that are certain to.
+    /// A bit for each ray that crosses; 0, as `is_delicate`, where they are certain to and are not asked.
     pub is_hit: u32,
     /// A bit for each ray that needs [`ExactRay::cross`]: too close to an edge, or a triangle seen edge-on.
     pub is_delicate: u32,

@@ -356,12 +356,10 @@ impl<'a> Measured<'a> {
             squares += expected * expected;
             of_tile.push(of);
         }
-        // The sums of a tile say it, but where a pixel has nothing to say.
+        // A tile has no sums where a pixel has nothing to say.
         let error_of = |place| pixels[film.index(place)].relative_squared_error();
-        let error = match &tile.error {
-            Some(sums) => sums.sum(),
-            None => tile.rect().pixels().filter_map(error_of).sum(),
-        };
+        let summed = || tile.rect().pixels().filter_map(error_of).sum();
+        let error = tile.error.map_or_else(summed, |sums| sums.sum());
         Self {
             tile,
             difficulty: of_tile,
@@ -450,6 +448,7 @@ impl Fall {
 mod tests {
     use super::*;
     use crate::color::Rgb;
+    use crate::film::ErrorSums;
     use crate::math::UVec2;
 
     /// The allotment of a row of pixels with so many samples a half.
@@ -457,7 +456,10 @@ mod tests {
         let film = Rect::full(UVec2::new(pixels.len() as u32, 1));
         let mut tiles = [Tile::new(film, &[])];
         tiles[0].taken.fill([taken; 2]);
+        let without_sums = Allotment::new(film, pixels, &tiles, Pattern::Random, 1, 1.0);
+        tiles[0].error = ErrorSums::of(pixels);
         let allotment = Allotment::new(film, pixels, &tiles, Pattern::Random, 1, 1.0);
+        assert_eq!(without_sums.now().error, allotment.now().error);
         (allotment, tiles)
     }
 

@@ -117,7 +117,7 @@ impl Stack<'_> {
     fn get(&self, index: usize) -> Entry {
         debug_assert!(index <= self.length);
         // SAFETY: the callers read only below `length` (`pop` has just lowered it), and
-        // entries below `length` were written by `push` or `insert`.
+        // entries below `length` were written by `push` or `insert`, on this stack or on the one that kept that length.
         unsafe { self.entries[index].assume_init() }
     }
 }
