@@ -5,9 +5,9 @@
 mod common;
 
 use common::chi_square::{Moments, uniform_p_value};
-use halfshade::math::{DVec3, UVec2, Vec2};
+use halfshade::math::{DVec3, UVec2, Vec2, Vec3};
 use halfshade::sampling::{
-    Pattern, Sampler, SamplingConfig, Target, square_to_cone, square_to_disk,
+    Pattern, Sampler, SamplingConfig, Target, square_to_cone, square_to_disk, square_to_hemisphere,
 };
 
 const PATTERNS: [Pattern; 4] = [
@@ -326,6 +326,12 @@ fn warps_keep_areas_in_proportion() {
         let p = square_to_disk(u);
         Vec2::new(p.length_squared(), turn(p.y.into(), p.x.into()))
     });
+    // By the cosine: the square of the height is uniform.
+    assert_warp_is_uniform("hemisphere", |u| {
+        let v = square_to_hemisphere(u);
+        assert!((v.length() - 1.0).abs() < 1e-6 && v.z >= 0.0, "{v}");
+        Vec2::new(v.z * v.z, turn(v.y.into(), v.x.into()))
+    });
     for one_minus_cos in [1e-200, 1e-12, 0.01, 0.5, 1.0, 1.7, 2.0] {
         assert_warp_is_uniform(&format!("cone {one_minus_cos}"), |u| {
             let v = square_to_cone(u, one_minus_cos);
@@ -346,6 +352,7 @@ fn warps_keep_areas_in_proportion() {
 #[test]
 fn warps_keep_the_middle_and_the_edge() {
     assert_eq!(square_to_disk(Vec2::splat(0.5)), Vec2::ZERO);
+    assert_eq!(square_to_hemisphere(Vec2::splat(0.5)), Vec3::Z);
     assert_eq!(square_to_cone(Vec2::splat(0.5), 0.3), DVec3::Z);
     for u in [Vec2::ZERO, Vec2::new(0.0, 0.7), Vec2::new(0.2, 0.0)] {
         assert!((square_to_disk(u).length() - 1.0).abs() < 1e-6, "{u}");

@@ -7,7 +7,9 @@ use crate::camera::{Camera, film_position};
 use crate::import::scene_file::framing_camera;
 use crate::interaction::{Interaction, rounding_error};
 use crate::math::{Aabb, DVec3, Frame, Ray, UVec2, UnitVec3, Vec2, Vec3, morton_pixel};
-use crate::sampling::{Pattern, Sampler, SamplingConfig, square_to_cone, square_to_disk};
+use crate::sampling::{
+    Pattern, Sampler, SamplingConfig, square_to_cone, square_to_disk, square_to_hemisphere,
+};
 
 use super::{Query, RaySet, Triangles};
 
@@ -56,7 +58,8 @@ pub fn own_rays(triangles: &Triangles, side: u32) -> Option<[RaySet; 4]> {
             let surface = surface(triangles, ray, &hit)?;
             let numbers = numbers(pixel);
             let to_light = surface.spawn_ray_to(light.point(numbers(Use::OnLight)));
-            let bounce = cosine_direction(surface.geometric_normal, numbers(Use::OffSurface));
+            let around = Frame::around(surface.geometric_normal);
+            let bounce = around.to_world(square_to_hemisphere(numbers(Use::OffSurface)));
             Some((to_light, surface.spawn_ray(bounce)))
         })
         .unzip();
@@ -140,12 +143,6 @@ fn numbers(pixel: UVec2) -> impl Fn(Use) -> Vec2 {
     };
     let sampler = Sampler::new(&config, pixel, 0);
     move |purpose| sampler.light(1, purpose as u32, 0, 1)
-}
-
-fn cosine_direction(normal: UnitVec3, u: Vec2) -> Vec3 {
-    let disk = square_to_disk(u);
-    let height = (1.0 - disk.length_squared()).max(0.0).sqrt();
-    Frame::around(normal).to_world(disk.extend(height))
 }
 
 fn random_ray(bounds: &Aabb, numbers: impl Fn(Use) -> Vec2) -> Ray {

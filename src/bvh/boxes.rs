@@ -20,7 +20,7 @@ pub struct BoxTree {
     /// What box is at each leaf of `nodes`.
     leaves: Vec<u32>,
     bounds: Aabb,
-    /// Largest magnitude of a coordinate of `bounds`.
+    /// That of `bounds`, [`Aabb::reach`].
     reach: f32,
     level: Level,
 }
@@ -34,7 +34,7 @@ impl BoxTree {
             nodes,
             leaves,
             bounds,
-            reach: bounds.min.abs().max(bounds.max.abs()).max_element(),
+            reach: bounds.reach(),
             level: Level::best(),
         }
     }
@@ -49,7 +49,7 @@ impl BoxTree {
         self.nodes.capacity() * size_of::<Node<WIDTH>>() + self.leaves.capacity() * size_of::<u32>()
     }
 
-    /// Largest magnitude of a coordinate of [`Self::bounds`].
+    /// That of [`Self::bounds`], [`Aabb::reach`].
     pub fn reach(&self) -> f32 {
         self.reach
     }
@@ -68,13 +68,18 @@ impl BoxTree {
             (true, true) => return,
         };
         let mut walk = Walk::new(root, caster.window(ray.t_min, ray.t_max));
+        let mut end = ray.t_max;
         while let Some(stop) = self.level.run(Step {
             nodes: &self.nodes,
             ray: &caster,
             walk: &mut walk,
         }) {
             match visit(self.leaves[stop.leaf.index()]) {
-                Some(t_max) => caster.narrow(&mut walk.window, t_max),
+                Some(t_max) if t_max != end => {
+                    end = t_max;
+                    caster.narrow(&mut walk.window, end);
+                }
+                Some(_) => {}
                 None => return,
             }
         }
@@ -94,7 +99,7 @@ impl Job<WIDTH> for Step<'_> {
     #[inline(always)]
     fn run<S: Lanes<WIDTH>>(self) -> Option<Stop> {
         let Self { nodes, ray, walk } = self;
-        walk.next::<S, false, WIDTH, _>(nodes, ray, &Boxes, &mut Silent)
+        walk.next::<S, false, WIDTH, _>(nodes, ray, &mut Boxes, &mut Silent)
     }
 }
 
@@ -105,10 +110,10 @@ impl Leaves<WIDTH> for Boxes {
     type Test<S> = ();
 
     #[inline(always)]
-    fn constants<S: Lanes<WIDTH>>(&self, _: &Caster) {}
+    fn constants<S: Lanes<WIDTH>>(&self) {}
 
     #[inline(always)]
-    fn test<S: Lanes<WIDTH>>(&self, (): &(), _: ChildRef, _: &Window) -> u32 {
+    fn test<S: Lanes<WIDTH>>(&mut self, (): &(), _: ChildRef, _: &mut Window) -> u32 {
         1
     }
 

@@ -1,15 +1,13 @@
-//! The triangle filter: which triangles of a block need the exact test, in `f32`, all at once.
+//! The triangle filter: which triangles of a block need the exact test, and which are hit for certain, in `f32`, all at
+//! once.
 
-use super::caster::{Caster, Window};
+use super::caster::Caster;
 use super::layout::Block;
 use super::simd::Lanes;
 use crate::math::UNIT_ROUNDOFF;
 
 /// What the exact test takes for an edge, in units of e; with room.
 const LEAST_WEIGHT_ERROR: f32 = 1.0 / (1 << 27) as f32;
-
-/// Said of a block in the place of its triangles: no lane has this bit.
-pub(super) const CERTAIN: u32 = 1 << 31;
 
 /// Depths of crossings along the main axis, with bounds of their errors.
 ///
@@ -114,6 +112,49 @@ pub(super) struct Certain<S> {
     pub far: S,
 }
 
+/// The nearest of some crossings that are certain.
+pub(super) struct Nearest {
+    /// Which it is; `None` where none is certain to be nearer than what is known.
+    pub lane: Option<usize>,
+    /// What is certain to be less far ahead is nearer.
+    pub surely: f32,
+    /// What is certain to be farther ahead is behind it.
+    pub end: f32,
+    /// Those that are too close to another one, or to what is known, to tell.
+    pub doubtful: u32,
+}
+
+impl<S> Certain<S> {
+    /// The nearest of the crossings `among`, given bounds as in [`Nearest`] of what is known.
+    #[inline(always)]
+    pub fn nearest<const W: usize>(&self, mut among: u32, surely: f32, end: f32) -> Nearest
+    where
+        S: Lanes<W>,
+    {
+        let (mut near, mut far) = ([0.0; W], [0.0; W]);
+        self.near.store(&mut near);
+        self.far.store(&mut far);
+        let mut nearest = Nearest {
+            lane: None,
+            surely,
+            end,
+            doubtful: 0,
+        };
+        while among != 0 {
+            let lane = among.trailing_zeros() as usize % W;
+            among &= among - 1;
+            if far[lane] < nearest.surely {
+                nearest.lane = Some(lane);
+                nearest.surely = near[lane];
+                nearest.end = far[lane];
+            } else if near[lane] <= nearest.end {
+                nearest.doubtful |= 1 << lane;
+            }
+        }
+        nearest
+    }
+}
+
 impl<S> Seen<S> {
     /// Those of the lanes in `among` whose ray is not certain to miss its triangle at these depths: a superset of what the
     /// exact test accepts there.
@@ -141,8 +182,11 @@ impl<S> Seen<S> {
     /// the point at its t is in the triangle's box but for 2u|t d|. The true crossing is in that box, and t is off by
     /// at most u for rounding and by 3E(1 + Z/h)/A + 4ε Z/h, relatively, for the sums
     /// behind it, at the depth h: less than u/2 where A h > 2eZ, which is asked for here.
+    /// It then is above 2^-49 Z by far, where the test takes it for 0, and the signs of the edge functions are those
+    /// that the test finds: there is nothing to clamp.
     ///
-    /// The depth h = z₁ + f(z₁)/A is off by at most 10eD/A + 24uZ.
+    /// The depth h = z₁ + f(z₁)/A is off by at most 10eD/A + 24uZ. What is told has 16eD/A + 64uZ: so much more that crossings
+    /// apart by it have parameters that differ when they are rounded, too. Where the sum for h overflows nothing is certain.
     #[inline(always)]
     pub fn certain<const W: usize>(&self, is_reversed: bool) -> Certain<S>
     where
@@ -163,12 +207,13 @@ impl<S> Seen<S> {
             S::splat(4.0),
             self.reach.mul(S::splat(64.0 * UNIT_ROUNDOFF)),
         );
-        let near = ahead.sub(off);
+        let (near, far) = (ahead.sub(off), ahead.add(off));
         let least_beyond = twice_error.mul_add(self.reach, S::splat(f32::MIN_POSITIVE));
+        let is_ahead = least_beyond.lt(depth.area.mul(near)) & far.lt(S::splat(f32::INFINITY));
         Certain {
-            lanes: is_inside & least_beyond.lt(depth.area.mul(near)),
+            lanes: is_inside & is_ahead,
             near,
-            far: ahead.add(off),
+            far,
         }
     }
 
@@ -179,6 +224,20 @@ impl<S> Seen<S> {
     {
         Depth::new(self.edges, self.depths, self.error, self.reach)
     }
+}
+
+/// The corners of a block's triangles, their coordinates in the order `axes`.
+#[inline(always)]
+pub(super) fn corners_in<S: Lanes<W>, const W: usize>(
+    block: &Block<W>,
+    [x, y, z]: [usize; 3],
+) -> [[S; 3]; 3] {
+    let [a, b, c] = &block.corners;
+    [
+        [S::load(&a[x]), S::load(&a[y]), S::load(&a[z])],
+        [S::load(&b[x]), S::load(&b[y]), S::load(&b[z])],
+        [S::load(&c[x]), S::load(&c[y]), S::load(&c[z])],
+    ]
 }
 
 /// The constants for the triangle filter, in vectors: of one ray for several triangles, or of several rays
@@ -206,43 +265,6 @@ impl<S> Filter<S> {
             shear: [S::splat(ray.shear[0]), S::splat(ray.shear[1])],
             is_reversed: ray.towards_lower[ray.axes[2]],
         }
-    }
-
-    /// The triangles of `block` that [`Seen::candidates`] are, but for those behind the origin. With `SURE` it is
-    /// [`CERTAIN`] where the exact test accepts one for certain, between these depths ahead.
-    #[inline(always)]
-    pub fn test<const SURE: bool, const W: usize>(
-        &self,
-        block: &Block<W>,
-        count: u32,
-        window: &Window,
-        [begin, end]: [f32; 2],
-    ) -> u32
-    where
-        S: Lanes<W>,
-    {
-        let [x, y, z] = self.axes;
-        let [a, b, c] = &block.corners;
-        let corners = [
-            [S::load(&a[x]), S::load(&a[y]), S::load(&a[z])],
-            [S::load(&b[x]), S::load(&b[y]), S::load(&b[z])],
-            [S::load(&c[x]), S::load(&c[y]), S::load(&c[z])],
-        ];
-        let depths = [S::splat(window.depth[0]), S::splat(window.depth[1])];
-        let seen = self.see(&corners);
-        let lanes = seen.candidates(depths, u32::MAX >> (32 - count));
-        if lanes == 0 {
-            return 0;
-        }
-        if SURE {
-            let certain = seen.certain(self.is_reversed);
-            let begins = S::splat(begin).lt(certain.near);
-            let ends = certain.far.lt(S::splat(end));
-            if lanes & certain.lanes & begins & ends != 0 {
-                return CERTAIN;
-            }
-        }
-        lanes & !self.certainly_behind(&corners, &seen)
     }
 
     /// The triangles that lie behind the origin of the ray for certain: such as the one that it starts on, a few roundings above.
@@ -340,4 +362,91 @@ fn edge<S: Lanes<W>, const W: usize>(p: [S; 3], q: [S; 3]) -> S {
 #[inline(always)]
 fn splat<S: Lanes<W>, const W: usize>(v: [f32; 3]) -> [S; 3] {
     [S::splat(v[0]), S::splat(v[1]), S::splat(v[2])]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bvh::simd::Portable;
+    use crate::bvh::triangle::ExactRays;
+    use crate::math::{Aabb, Ray, Vec3};
+
+    const WIDTH: usize = 8;
+
+    /// A linear congruential generator.
+    struct Random(u64);
+
+    impl Random {
+        /// In [-1, 1).
+        fn number(&mut self) -> f32 {
+            self.0 = self.0.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(1);
+            (self.0 >> 40) as f32 / (1u64 << 23) as f32 - 1.0
+        }
+
+        fn point(&mut self) -> Vec3 {
+            Vec3::new(self.number(), self.number(), self.number())
+        }
+    }
+
+    /// Triangles of all shapes and sizes, and a ray through one of them.
+    fn some(random: &mut Random, round: usize) -> (Block<WIDTH>, Ray) {
+        let scale = 2f32.powi([0, -60, -20, 20, 42, 43, 44, 49][round % 8]);
+        let width = [1.0, 1e-2, 1e-4, 1e-6][round / 8 % 4];
+        let mut block = Block::EMPTY;
+        let mut target = Vec3::ZERO;
+        for lane in 0..WIDTH {
+            let (a, b) = (random.point(), random.point());
+            let c = a + 0.5 * (b - a) + width * random.point();
+            target = a + 0.25 * (b - a) + random.number().abs().powi(8) * 0.5 * (c - a);
+            let corners = [a, b, c].map(|p| (scale * p).to_array());
+            block.set(lane, &corners, lane as u32);
+        }
+        let origin = 2.0 * random.point();
+        let length = 2f32.powi(7 * (round / 32 % 7) as i32 - 21);
+        (block, Ray::new(scale * origin, length * (target - origin)))
+    }
+
+    #[test]
+    fn what_is_certain_is_what_the_exact_test_finds() {
+        let mut random = Random(7);
+        let mut known = 0;
+        for round in 0..20_000 {
+            let (block, ray) = some(&mut random, round);
+            let points = block.corners.iter().flat_map(|[x, y, z]| {
+                let point = |i: usize| Vec3::new(x[i], y[i], z[i]);
+                (0..WIDTH).map(point)
+            });
+            let bounds = Aabb::of_points(points);
+            let caster = Caster::new(&ray, &bounds, bounds.reach(), 0.0);
+            let Some(caster) = caster else { continue };
+            let filter = Filter::<Portable<WIDTH>>::new(&caster);
+            let certain = filter
+                .see(&corners_in(&block, filter.axes))
+                .certain(filter.is_reversed);
+            let (mut near, mut far) = ([0.0; WIDTH], [0.0; WIDTH]);
+            certain.near.store(&mut near);
+            certain.far.store(&mut far);
+            let turned = |v: Vec3| filter.axes.map(|k| [v[k]; WIDTH]);
+            let (origins, directions) = (turned(ray.origin), turned(ray.direction));
+            let corners = block.corners.map(|rows| filter.axes.map(|k| rows[k]));
+            let rays = ExactRays {
+                origin: origins.each_ref(),
+                direction: directions.each_ref(),
+            };
+            let (asked, told) = (rays.cross::<false>(&corners), rays.cross::<true>(&corners));
+            let main = f64::from(ray.direction[filter.axes[2]].abs());
+            for lane in (0..WIDTH).filter(|lane| certain.lanes >> lane & 1 != 0) {
+                let corners = block.corners_of(lane, filter.axes);
+                let crossing = caster.exact().cross_certain(&corners);
+                assert_eq!(caster.exact().cross(&corners), Some(crossing), "{ray:?}");
+                assert!(asked.is_hit >> lane & 1 != 0, "{ray:?}");
+                assert_eq!(asked.get(lane), crossing);
+                assert_eq!(told.get(lane), crossing);
+                let depth = f64::from(crossing.t) * main;
+                assert!(f64::from(near[lane]) < depth && depth < f64::from(far[lane]));
+                known += 1;
+            }
+        }
+        assert!(known > 5000, "{known}");
+    }
 }

@@ -197,7 +197,7 @@ impl Forest {
             let accept = |hit: &Hit| instance.confirms(ray, hit.t, slack) && accept(hit);
             let tree = &self.trees[instance.tree as usize];
             let own = instance.ray(ray);
-            tree.cast::<ANY, _>(&own, &mut search, index, &accept, &mut Silent);
+            tree.cast::<ANY, false, _>(&own, &mut search, index, &accept, &mut Silent);
             let is_done = ANY && search.hit.is_some();
             (!is_done).then_some(search.t_best)
         });

@@ -2,8 +2,8 @@
 //!
 //! Triangles go in; out comes a [`Bvh`], or a [`Tracer`] over instances of several, that
 //! answers `closest_hit` and `any_hit`. A hit is a function of ray and triangle alone
-//! (`triangle`): trees and vector instructions only decide what need not be looked at, and
-//! `caster` shows why they never decide wrongly.
+//! (`triangle`): trees and vector instructions only decide what need not be looked at, and what is certain to be hit;
+//! `caster` and `filter` show why they never decide wrongly.
 
 mod beam;
 mod boxes;
@@ -16,6 +16,7 @@ mod hit;
 mod layout;
 mod packet;
 mod simd;
+mod single;
 mod stats;
 mod traverse;
 mod tree;

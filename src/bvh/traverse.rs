@@ -6,7 +6,7 @@
 use super::caster::{Caster, Window};
 use super::count::Counter;
 use super::layout::{ChildRef, Node};
-use super::simd::{Entry, Lanes, Stack, prefetch};
+use super::simd::{Entry, Lanes, Stack, Waiting, prefetch};
 
 /// A ray's constants for the box test, in vectors.
 struct BoxTest<S> {
@@ -97,9 +97,14 @@ pub(super) trait Leaves<const W: usize> {
     type Test<S>;
     /// Makes them. As all of these functions `#[inline(always)]`: one of its own, such as a
     /// closure may become, would lack the instruction set of the walk.
-    fn constants<S: Lanes<W>>(&self, ray: &Caster) -> Self::Test<S>;
-    /// Which things in `leaf` may be hit within `window`: where there are any the walk pauses.
-    fn test<S: Lanes<W>>(&self, test: &Self::Test<S>, leaf: ChildRef, window: &Window) -> u32;
+    fn constants<S: Lanes<W>>(&self) -> Self::Test<S>;
+    /// Which things in `leaf` may be hit within `window`, which it may narrow: where there are any the walk pauses.
+    fn test<S: Lanes<W>>(
+        &mut self,
+        test: &Self::Test<S>,
+        leaf: ChildRef,
+        window: &mut Window,
+    ) -> u32;
     /// Is told that `leaf` will be visited soon.
     fn announce(&self, leaf: ChildRef);
 }
@@ -117,8 +122,8 @@ pub(super) struct Stop {
 /// It pauses so that what is done there, which is scalar and much longer, is compiled apart and
 /// does not crowd the loop's constants out of the registers.
 pub(super) struct Walk {
-    stack: Stack,
-    /// Where hits still matter. To be narrowed in a pause.
+    waiting: Waiting,
+    /// Where hits still matter. To be narrowed at leaves and in a pause.
     pub window: Window,
 }
 
@@ -126,12 +131,14 @@ impl Walk {
     /// From `root` down.
     #[inline(always)]
     pub fn new(root: ChildRef, window: Window) -> Self {
-        let mut stack = Stack::new();
+        let mut waiting = Waiting::new();
+        let mut stack = waiting.stack();
         stack.push(Entry::new(window.near, root));
-        Self { stack, window }
+        stack.keep();
+        Self { waiting, window }
     }
 
-    /// Goes on to the next leaf that has something in it; `None` at the end.
+    /// Goes on to the next leaf that has something in it; `None` at the end, which ends the walk for good.
     ///
     /// With `ANY` children are not sorted beyond the first two.
     #[inline(always)]
@@ -139,16 +146,16 @@ impl Walk {
         &mut self,
         nodes: &[Node<W>],
         ray: &Caster,
-        leaves: &L,
+        leaves: &mut L,
         counter: &mut impl Counter,
     ) -> Option<Stop>
     where
         S: Lanes<W>,
     {
         let boxes = BoxTest::<S>::new(ray);
-        let test = leaves.constants::<S>(ray);
-        let (near, far) = (S::splat(self.window.near), S::splat(self.window.far));
-        let stack = &mut self.stack;
+        let test = leaves.constants::<S>();
+        let near = S::splat(self.window.near);
+        let mut stack = self.waiting.stack();
         loop {
             let mut current = loop {
                 let entry = stack.pop()?;
@@ -156,6 +163,7 @@ impl Walk {
                     break entry.child();
                 }
             };
+            let far = S::splat(self.window.far);
             while !current.is_leaf() {
                 counter.node();
                 let node = &nodes[current.index()];
@@ -164,15 +172,16 @@ impl Walk {
                     leaf if leaf.is_leaf() => leaves.announce(leaf),
                     child => prefetch(nodes, child.index()),
                 };
-                match nearest_child::<S, ANY, W>(node, mask, enter, stack, announce) {
+                match nearest_child::<S, ANY, W>(node, mask, enter, &mut stack, announce) {
                     Some(child) => current = child,
                     None => break,
                 }
             }
             if current.is_leaf() {
                 counter.leaf();
-                let lanes = leaves.test(&test, current, &self.window);
+                let lanes = leaves.test(&test, current, &mut self.window);
                 if lanes != 0 {
+                    stack.keep();
                     return Some(Stop {
                         leaf: current,
                         lanes,
@@ -191,7 +200,7 @@ pub(super) fn nearest_child<S, const ANY: bool, const W: usize>(
     node: &Node<W>,
     mask: u32,
     enter: S,
-    stack: &mut Stack,
+    stack: &mut Stack<'_>,
     announce: impl Fn(Entry),
 ) -> Option<ChildRef>
 where

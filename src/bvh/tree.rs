@@ -1,15 +1,13 @@
 //! A tree of one mesh, in the width that suits the processor.
 
 use super::build::{Builder, build};
-use super::caster::{Caster, Window};
 use super::count::{Counter, Silent, TraversalCounts};
-use super::filter::{CERTAIN, Filter};
-use super::hit::{Hit, HitRow, Search, key};
-use super::layout::{Block, ChildRef, Node, Tree};
+use super::hit::{Hit, HitRow, Search};
+use super::layout::{Block, Node, Tree};
 use super::packet::Together;
-use super::simd::{Job, Lanes, Level, Run, prefetch};
+use super::simd::{Level, Run};
+use super::single::Target;
 use super::stats::TreeStats;
-use super::traverse::{Leaves, Stop, Walk};
 use crate::math::{Aabb, ROW, Ray, RayRow, Vec3};
 
 /// Which vectors a tree is laid out for and traced with. Hits are the same with all.
@@ -101,22 +99,23 @@ impl Bvh {
             Body::Eight(tree) => tree.prefer_large_pages(),
             Body::Sixteen(tree) => tree.prefer_large_pages(),
         }
-        let bounds = bvh.bounds();
-        bvh.reach = bounds.min.abs().max(bounds.max.abs()).max_element();
+        bvh.reach = bvh.bounds().reach();
         bvh
     }
 
     /// The first hit along `ray` in `t_min < t < t_max`; among several at the same `t` the
     /// lowest triangle. `None` where there is none.
     pub fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
-        self.closest_hit_if(ray, |_| true)
+        self.first_hit(ray, &mut Silent)
     }
 
     /// The first hit that `accept` does not turn down.
     ///
     /// `accept` may be asked in any order, and not of hits behind an accepted one.
     pub fn closest_hit_if(&self, ray: &Ray, accept: impl Fn(&Hit) -> bool) -> Option<Hit> {
-        self.search::<false, _>(ray, &accept, &mut Silent)
+        let mut search = Search::new(ray.t_min, ray.t_max);
+        self.cast::<false, false, _>(ray, &mut search, 0, &accept, &mut Silent);
+        search.hit
     }
 
     /// Whether anything is hit in `t_min < t < t_max`.
@@ -126,7 +125,8 @@ impl Bvh {
 
     /// Whether there is a hit that `accept` does not turn down.
     pub fn any_hit_if(&self, ray: &Ray, accept: impl Fn(&Hit) -> bool) -> bool {
-        self.search::<true, _>(ray, &accept, &mut Silent).is_some()
+        let mut search = Search::new(ray.t_min, ray.t_max);
+        self.cast::<true, false, _>(ray, &mut search, 0, &accept, &mut Silent)
     }
 
     /// [`Bvh::closest_hit`] of each of `rays`.
@@ -156,7 +156,7 @@ impl Bvh {
                 continue;
             }
             let mut search = Search::beyond(&ray, hits.get(i));
-            self.cast::<false, _>(&ray, &mut search, 0, &|_: &Hit| true, &mut Silent);
+            self.look_for::<false, _>(&ray, &mut search, &mut Silent);
             if let Some(hit) = &search.hit {
                 hits.set(i, hit);
             }
@@ -192,7 +192,7 @@ impl Bvh {
 
     /// [`Bvh::closest_hit`], adding to `counts` what it looked at.
     pub fn closest_hit_counted(&self, ray: &Ray, counts: &mut TraversalCounts) -> Option<Hit> {
-        self.search::<false, _>(ray, &|_: &Hit| true, counts)
+        self.first_hit(ray, counts)
     }
 
     /// [`Bvh::any_hit`], adding to `counts` what it looked at.
@@ -228,191 +228,54 @@ impl Bvh {
         }
     }
 
-    fn search<const ANY: bool, C: Counter>(
-        &self,
-        ray: &Ray,
-        accept: &impl Fn(&Hit) -> bool,
-        counter: &mut C,
-    ) -> Option<Hit> {
+    #[inline(always)]
+    fn first_hit(&self, ray: &Ray, counter: &mut impl Counter) -> Option<Hit> {
         let mut search = Search::new(ray.t_min, ray.t_max);
-        self.cast::<ANY, _>(ray, &mut search, 0, accept, counter);
+        self.look_for::<false, _>(ray, &mut search, counter);
         search.hit
     }
 
-    /// Whether there is any hit, whatever it is: most are certain without the exact test.
+    #[inline(always)]
     fn is_blocked(&self, ray: &Ray, counter: &mut impl Counter) -> bool {
         let mut search = Search::new(ray.t_min, ray.t_max);
-        let accept = |_: &Hit| true;
-        match &self.body {
-            Body::Eight(tree) => {
-                self.cast_in::<true, true, 8, _>(tree, ray, &mut search, 0, &accept, counter)
-            }
-            Body::Sixteen(tree) => {
-                self.cast_in::<true, true, 16, _>(tree, ray, &mut search, 0, &accept, counter)
-            }
-        }
+        self.look_for::<true, _>(ray, &mut search, counter)
     }
 
-    /// Looks for a hit better than that of `search`, as instance `instance`.
-    pub(super) fn cast<const ANY: bool, C: Counter>(
+    /// Looks for any hit, or for one better than that of `search`, whatever it is.
+    #[inline(always)]
+    fn look_for<const ANY: bool, C: Counter>(
+        &self,
+        ray: &Ray,
+        search: &mut Search,
+        counter: &mut C,
+    ) -> bool {
+        self.cast::<ANY, true, C>(ray, search, 0, &|_: &Hit| true, counter)
+    }
+
+    /// See [`Target::search`].
+    #[inline(always)]
+    pub(super) fn cast<const ANY: bool, const SURE: bool, C: Counter>(
         &self,
         ray: &Ray,
         search: &mut Search,
         instance: u32,
         accept: &impl Fn(&Hit) -> bool,
         counter: &mut C,
-    ) {
+    ) -> bool {
+        macro_rules! search {
+            ($tree:ident) => {{
+                let target = Target {
+                    tree: $tree,
+                    level: self.level,
+                    reach: self.reach,
+                    instance,
+                };
+                target.search::<ANY, SURE, C>(ray, search, accept, counter)
+            }};
+        }
         match &self.body {
-            Body::Eight(tree) => {
-                self.cast_in::<ANY, false, 8, _>(tree, ray, search, instance, accept, counter);
-            }
-            Body::Sixteen(tree) => {
-                self.cast_in::<ANY, false, 16, _>(tree, ray, search, instance, accept, counter);
-            }
+            Body::Eight(tree) => search!(tree),
+            Body::Sixteen(tree) => search!(tree),
         }
-    }
-
-    /// With `ANY` it returns whether there is a hit that `accept` likes. With `SURE`, too, that may be one of which `accept`,
-    /// which is to like all, is not asked, and of which `search` does not hear.
-    #[inline(always)]
-    fn cast_in<const ANY: bool, const SURE: bool, const W: usize, C: Counter>(
-        &self,
-        tree: &Tree<W>,
-        ray: &Ray,
-        search: &mut Search,
-        instance: u32,
-        accept: &impl Fn(&Hit) -> bool,
-        counter: &mut C,
-    ) -> bool
-    where
-        Level: Run<W>,
-    {
-        const { assert!(ANY || !SURE) };
-        let Some(ray) = &Caster::new(ray, &tree.bounds, self.reach, 0.0) else {
-            return false;
-        };
-        let certain = match SURE {
-            true => ray.certain_depths(search.t_min, search.t_best),
-            false => [0.0; 2],
-        };
-        let mut seek = |root: ChildRef| {
-            let mut walk = Walk::new(root, ray.window(search.t_min, search.t_best));
-            while let Some(stop) = self.level.run(Step::<ANY, SURE, W, C> {
-                blocks: Blocks {
-                    blocks: &tree.blocks,
-                    certain,
-                },
-                nodes: &tree.nodes,
-                ray,
-                walk: &mut walk,
-                counter,
-            }) {
-                if SURE && stop.lanes == CERTAIN {
-                    return true;
-                }
-                let block = &tree.blocks[stop.leaf.index()];
-                if search_lanes::<ANY, W>(block, stop.lanes, ray, search, instance, accept, counter)
-                {
-                    return true;
-                }
-                ray.narrow(&mut walk.window, search.t_best);
-            }
-            false
-        };
-        if !tree.nodes.is_empty() {
-            return seek(ChildRef::node(0));
-        }
-        // All blocks in turn.
-        let mut blocks = (0..tree.triangles).step_by(W).enumerate();
-        blocks.any(|(block, first)| seek(ChildRef::leaf(block, W.min(tree.triangles - first))))
-    }
-}
-
-/// Looks at those triangles of a block for hits that are better than the best.
-///
-/// With `ANY` the first hit that `accept` likes ends the search: then it returns `true`.
-#[inline(always)]
-fn search_lanes<const ANY: bool, const W: usize>(
-    block: &Block<W>,
-    mut lanes: u32,
-    ray: &Caster,
-    search: &mut Search,
-    instance: u32,
-    accept: &impl Fn(&Hit) -> bool,
-    counter: &mut impl Counter,
-) -> bool {
-    while lanes != 0 {
-        let lane = lanes.trailing_zeros() as usize % W;
-        lanes &= lanes - 1;
-        counter.triangle();
-        let Some(crossing) = ray.exact().cross(&block.corners_of(lane, ray.axes)) else {
-            continue;
-        };
-        let triangle = block.triangles[lane];
-        if !search.is_better(crossing.t, key(instance, triangle)) {
-            continue;
-        }
-        let hit = Hit::of(crossing, instance, triangle);
-        if accept(&hit) {
-            search.keep(hit);
-            if ANY {
-                return true;
-            }
-        }
-    }
-    false
-}
-
-/// A walk to the next block that needs the exact test, to be compiled for each kind of vectors.
-struct Step<'a, const ANY: bool, const SURE: bool, const W: usize, C> {
-    nodes: &'a [Node<W>],
-    blocks: Blocks<'a, SURE, W>,
-    ray: &'a Caster,
-    walk: &'a mut Walk,
-    counter: &'a mut C,
-}
-
-impl<const ANY: bool, const SURE: bool, const W: usize, C: Counter> Job<W>
-    for Step<'_, ANY, SURE, W, C>
-{
-    type Output = Option<Stop>;
-
-    #[inline(always)]
-    fn run<S: Lanes<W>>(self) -> Option<Stop> {
-        let Self {
-            nodes,
-            blocks,
-            ray,
-            walk,
-            counter,
-        } = self;
-        walk.next::<S, ANY, W, _>(nodes, ray, &blocks, counter)
-    }
-}
-
-/// The leaves of a tree over triangles.
-struct Blocks<'a, const SURE: bool, const W: usize> {
-    blocks: &'a [Block<W>],
-    /// See [`Filter::test`].
-    certain: [f32; 2],
-}
-
-impl<const SURE: bool, const W: usize> Leaves<W> for Blocks<'_, SURE, W> {
-    type Test<S> = Filter<S>;
-
-    #[inline(always)]
-    fn constants<S: Lanes<W>>(&self, ray: &Caster) -> Filter<S> {
-        Filter::new(ray)
-    }
-
-    #[inline(always)]
-    fn test<S: Lanes<W>>(&self, filter: &Filter<S>, leaf: ChildRef, window: &Window) -> u32 {
-        let block = &self.blocks[leaf.index()];
-        filter.test::<SURE, W>(block, leaf.count(), window, self.certain)
-    }
-
-    #[inline(always)]
-    fn announce(&self, leaf: ChildRef) {
-        prefetch(self.blocks, leaf.index());
     }
 }

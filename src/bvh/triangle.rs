@@ -5,7 +5,7 @@
 //! ray starts at the origin and sheared so that it runs along one axis; signs of three 2D edge
 //! functions then tell whether the ray passes inside. Two triangles that share an edge compute
 //! the same edge function up to its sign, so a ray cannot slip between them. Everything faster
-//! in the tracing core only has to let through what this test accepts.
+//! in the tracing core only has to let through what this test accepts, or to know for certain that it does.
 //!
 //! What runs for each triangle is `#[inline(always)]` and free of `array::map`, which the
 //! compiler leaves as a call (with its copies) inside of functions of another instruction set.
@@ -20,7 +20,7 @@ const POINT_TOLERANCE: f64 = f32::EPSILON as f64;
 const CANCELLED: f64 = (1u64 << 27) as f64;
 
 /// Parameter and barycentric weights of a hit, each rounded once from f64.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Crossing {
     pub t: f32,
     pub u: f32,
@@ -57,9 +57,7 @@ impl ExactRay {
     /// `None` also where the triangle has no area as seen along the ray, beyond rounding.
     #[inline(always)]
     pub fn cross(&self, corners: &[[f32; 3]; 3]) -> Option<Crossing> {
-        let z = self.beyond_origin(corners, 2);
-        let x = sub(self.beyond_origin(corners, 0), scale(z, self.shear[0]));
-        let y = sub(self.beyond_origin(corners, 1), scale(z, self.shear[1]));
+        let [x, y, z] = self.sheared(corners);
         let [reach, error] = reach_and_edge_error(x, y, z);
         let mut weights = edge_functions(x, y);
         let mut area = sum(weights);
@@ -84,14 +82,41 @@ impl ExactRay {
         if depth.abs() <= 8.0 * f64::EPSILON * reach * area.abs() {
             depth = 0.0; // the ray starts in the plane, as far as can be told
         }
+        let crossing = self.crossing(weights, area, depth);
+        self.confirms(corners, crossing.t).then_some(crossing)
+    }
+
+    /// What [`Self::cross`] finds where it is certain to find something, far from all that it looks out for: see
+    /// [`Certain`](super::filter::Certain).
+    #[inline(always)]
+    pub fn cross_certain(&self, corners: &[[f32; 3]; 3]) -> Crossing {
+        let [x, y, z] = self.sheared(corners);
+        let weights = edge_functions(x, y);
+        let crossing = self.crossing(weights, sum(weights), sum(mul(weights, z)));
+        debug_assert_eq!(self.cross(corners), Some(crossing));
+        crossing
+    }
+
+    /// Of the three corners, moved so that the ray starts at the origin and sheared so that it runs along the last axis,
+    /// the first, the second and the third coordinates.
+    #[inline(always)]
+    fn sheared(&self, corners: &[[f32; 3]; 3]) -> [Four; 3] {
+        let z = self.beyond_origin(corners, 2);
+        let x = sub(self.beyond_origin(corners, 0), scale(z, self.shear[0]));
+        let y = sub(self.beyond_origin(corners, 1), scale(z, self.shear[1]));
+        [x, y, z]
+    }
+
+    /// Of the sums that make it up, each rounded once.
+    #[inline(always)]
+    fn crossing(&self, weights: Four, area: f64, depth: f64) -> Crossing {
         let numerators = [depth, weights[1], weights[2], 0.0];
         let [t, u, v, _] = divide(numerators, [area * self.direction[2], area, area, 1.0]);
-        let crossing = Crossing {
+        Crossing {
             t: t as f32,
             u: u as f32,
             v: v as f32,
-        };
-        self.confirms(corners, crossing.t).then_some(crossing)
+        }
     }
 
     /// Coordinate `axis` of the corners, less that of the ray's origin.
@@ -147,7 +172,7 @@ pub(super) struct Crossings<const W: usize> {
     pub t: [f32; W],
     pub u: [f32; W],
     pub v: [f32; W],
-    /// A bit for each ray that crosses.
+    /// A bit for each ray that crosses; 0, as `is_delicate`, where they are certain to and are not asked.
     pub is_hit: u32,
     /// A bit for each ray that needs [`ExactRay::cross`]: too close to an edge, or a triangle seen edge-on.
     pub is_delicate: u32,
@@ -166,9 +191,10 @@ impl<const W: usize> Crossings<W> {
 }
 
 impl<const W: usize> ExactRays<'_, W> {
-    /// Where each ray crosses the triangle with its corners.
+    /// Where each ray crosses the triangle with its corners. Those that are `CERTAIN` to do so are not asked, as in
+    /// [`ExactRay::cross_certain`].
     #[inline(always)]
-    pub fn cross(&self, corners: &Corners<W>) -> Crossings<W> {
+    pub fn cross<const CERTAIN: bool>(&self, corners: &Corners<W>) -> Crossings<W> {
         let (mut t, mut u, mut v) = ([0.0; W], [0.0; W], [0.0; W]);
         let (mut hit, mut delicate) = ([0u32; W], [0u32; W]);
         // One straight run of arithmetic without a branch or a call, which compiles to vectors. It is what
@@ -219,10 +245,16 @@ impl<const W: usize> ExactRays<'_, W> {
             let is_inside = least >= 0.0;
             let is_near_edge = least >= -error;
             let mut depth = wa * az + wb * bz + wc * cz;
-            if depth.abs() <= 8.0 * f64::EPSILON * z * area.abs() {
+            if !CERTAIN && depth.abs() <= 8.0 * f64::EPSILON * z * area.abs() {
                 depth = 0.0;
             }
             let crossing = (depth / (area * dz)) as f32;
+            t[i] = crossing;
+            u[i] = (wb / area) as f32;
+            v[i] = (wc / area) as f32;
+            if CERTAIN {
+                continue;
+            }
             let mut is_confirmed = true;
             for (o, d, k) in [(ox, dx, 0), (oy, dy, 1), (oz, dz, 2)] {
                 let way = f64::from(crossing) * d;
@@ -232,9 +264,6 @@ impl<const W: usize> ExactRays<'_, W> {
                 let high = f64::from(larger(a[k], larger(b[k], c[k])));
                 is_confirmed &= (low - slack <= point) & (point <= high + slack);
             }
-            t[i] = crossing;
-            u[i] = (wb / area) as f32;
-            v[i] = (wc / area) as f32;
             hit[i] = u32::from(is_clear & is_inside & is_confirmed);
             delicate[i] = u32::from(!is_clear | (is_near_edge & !is_inside));
         }

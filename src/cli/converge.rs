@@ -10,7 +10,7 @@ use halfshade::converge::{
     About, Measured, Method, OtherPoint, Plan, Reference, ReferenceReport, Seconds, Study, Subject,
     csv, digest, measure, page, read_curves, svg,
 };
-use halfshade::import::{Imported, SceneOptions, import};
+use halfshade::import::{Imported, SceneOptions};
 use halfshade::math::UVec2;
 use halfshade::output::{check_writable, write_whole};
 use halfshade::prepare::{Prepared, prepare};
@@ -22,6 +22,7 @@ use super::Failure;
 use super::arguments;
 use super::console::{Console, print, printable};
 use super::curve_tables::tables;
+use super::load::{ask_for_size, camera, load_scene};
 use super::machine::machine;
 use super::names;
 use super::options::SceneArguments;
@@ -156,7 +157,7 @@ fn run_on_pool(options: &ConvergeOptions, folder: &Folder) -> Result<Study, Fail
     let Imported {
         scene, settings, ..
     } = load(options)?;
-    let placed = options.scene.camera(&scene)?;
+    let placed = camera(&scene, &options.scene.scene)?;
     let mut seconds = Seconds {
         import: clock.step(),
         ..Seconds::default()
@@ -221,14 +222,11 @@ fn load(options: &ConvergeOptions) -> Result<Imported, Failure> {
         camera: options.camera.clone(),
         ..options.scene.import_options()
     };
-    // Not later: a default camera frames the scene in this size.
-    if let Some(UVec2 { x, y }) = options.size {
-        let size = ("film.size".to_owned(), format!("[{x}, {y}]"));
-        import_options.overrides.push(size);
+    if let Some(size) = options.size {
+        ask_for_size(&mut import_options, size);
     }
-    let mut imported = import(&options.scene.scene, &import_options)
-        .map_err(|error| Failure::of_import(COMMAND, &error))?;
-    options.console.warn_all(&imported.warnings);
+    let path = &options.scene.scene;
+    let mut imported = load_scene(COMMAND, path, &import_options, options.console)?;
     let settings = &mut imported.settings;
     settings.max_depth = options.max_depth.or(settings.max_depth);
     if options.size.is_none() {

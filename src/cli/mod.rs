@@ -25,6 +25,7 @@ mod interrupt;
 mod layers;
 mod left_out;
 mod limits;
+mod load;
 #[cfg(feature = "report")]
 mod machine;
 mod measure;

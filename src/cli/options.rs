@@ -4,21 +4,19 @@ use std::path::PathBuf;
 
 use clap::Args;
 use halfshade::bvh::Builder;
-use halfshade::camera::Camera;
 use halfshade::film::Rect;
 use halfshade::import::{Pose, SceneOptions};
 use halfshade::integrate::Aov;
 use halfshade::math::UVec2;
 use halfshade::sampling::{Pattern, Target};
 use halfshade::scene::{
-    IntegratorKind, Keep, MAX_DEPTH, MAX_LIGHT_SAMPLES, MAX_SAMPLES, Needs, Placed, Scene,
-    Settings, ToneMap,
+    IntegratorKind, Keep, MAX_DEPTH, MAX_LIGHT_SAMPLES, MAX_SAMPLES, Needs, Settings, ToneMap,
 };
 
-use super::Failure;
 use super::arguments::{self, Exposure, Frames, SampleId};
 use super::console::Console;
 use super::layers::{GUIDES, LayerKind};
+use super::load::ask_for_size;
 use super::names::{self, one_of};
 use super::targets;
 
@@ -267,14 +265,6 @@ impl SceneArguments {
     pub fn import_options(&self) -> SceneOptions {
         self.reading.import_options()
     }
-
-    /// The camera of `scene` that is looked through.
-    pub fn camera<'a>(&self, scene: &'a Scene) -> Result<&'a Placed<Camera>, Failure> {
-        scene.cameras.first().ok_or_else(|| {
-            let name = self.scene.display();
-            Failure::job(format_args!("{name}: there is no camera to look through"))
-        })
-    }
 }
 
 impl ReadingOptions {
@@ -306,17 +296,15 @@ impl RenderOptions {
     pub fn import_options(&self) -> SceneOptions {
         let mut options = self.scene.import_options();
         options.camera = self.picture.camera.clone();
-        // Not later, with the other options: a default camera frames the scene in this size.
-        if let Some(UVec2 { x, y }) = self.picture.size {
-            let size = ("film.size".to_owned(), format!("[{x}, {y}]"));
-            options.overrides.push(size);
+        if let Some(size) = self.picture.size {
+            ask_for_size(&mut options, size);
         }
         options.keep = self.work.keep.keep();
         let aovs = self.output.layers.iter().filter_map(|layer| layer.aov());
         let guides = self.output.denoise.then_some(GUIDES.map(Aov::View));
         let aovs = aovs.chain(guides.into_iter().flatten());
         options.layers = aovs.fold(Needs::default(), |all, aov| all.and(aov.needs()));
-        // Nor these: what neither picture nor layers read is left out at once.
+        // Not later, with other settings: what neither picture nor layers read is left out at once.
         if let Some(integrator) = self.picture.integrator {
             let kind = format!("{:?}", integrator.name());
             options.overrides.push(("integrator.kind".to_owned(), kind));

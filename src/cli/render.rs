@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use halfshade::camera::Camera;
 use halfshade::film::{ErrorEstimate, Film, Rect, StoppedBy};
-use halfshade::import::{Imported, import};
+use halfshade::import::Imported;
 use halfshade::math::{DVec3, UVec2};
 use halfshade::output::automatic_exposure;
 use halfshade::output::denoise::{Denoiser, LIBRARY_VARIABLE};
@@ -26,6 +26,7 @@ use super::interrupt::Interrupt;
 use super::layers::{Kept, LayerValues};
 use super::left_out::LeftOutLine;
 use super::limits::limits;
+use super::load::{camera, load_scene};
 use super::memory;
 use super::metadata::metadata;
 use super::options::RenderOptions;
@@ -85,7 +86,7 @@ fn run_on_pool(
     let deadline = deadline(options, targets, crop, &clock);
     let limits = limits(options, &mut imported.settings, deadline)?;
     let settings = &imported.settings;
-    let camera = options.scene.camera(&imported.scene)?;
+    let camera = camera(&imported.scene, &options.scene.scene)?;
     seconds.import = clock.step();
 
     let limit = options.work.max_memory;
@@ -257,16 +258,15 @@ fn deadline(
 
 /// The scene, with settings that follow the options.
 fn load(options: &RenderOptions) -> Result<Imported, Failure> {
-    let mut imported = import(&options.scene.scene, &options.import_options())
-        .map_err(|error| Failure::of_import("render", &error))?;
-    announce(options.console, &imported);
+    let path = &options.scene.scene;
+    let mut imported = load_scene("render", path, &options.import_options(), options.console)?;
+    announce_defaults(options.console, &imported);
     options.apply(&mut imported.settings);
     Ok(imported)
 }
 
-/// Warnings, and what was added to a scene that lacked it.
-fn announce(console: Console, imported: &Imported) {
-    console.warn_all(&imported.warnings);
+/// What was added to a scene that lacked it.
+fn announce_defaults(console: Console, imported: &Imported) {
     if let Some(defaults) = &imported.defaults {
         let added = match (defaults.cameras, defaults.lights) {
             (0, _) => "no lights: it gets these",

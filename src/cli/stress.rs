@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use halfshade::import::{SceneOptions, import};
+use halfshade::import::SceneOptions;
 use halfshade::math::UVec2;
 use halfshade::output::write_whole;
 use halfshade::stress::invariance::{examine, technique};
@@ -14,6 +14,7 @@ use serde::Serialize;
 use super::Failure;
 use super::arguments;
 use super::console::{Console, print, printable};
+use super::load::{ask_for_size, camera, load_scene};
 use super::table::{Table, number};
 
 const EXAMPLES: &str = "\
@@ -108,20 +109,10 @@ fn scene_path(names: &[String]) -> Result<Option<&Path>, Failure> {
 /// Holds a scene against itself, as a small picture.
 fn run_scene(path: &Path, options: &StressOptions, effort: Effort) -> Result<Vec<Report>, Failure> {
     let UVec2 { x, y } = options.size;
-    let import_options = SceneOptions {
-        // Not later: a default camera frames the scene in this size.
-        overrides: vec![("film.size".to_owned(), format!("[{x}, {y}]"))],
-        ..SceneOptions::default()
-    };
-    let imported =
-        import(path, &import_options).map_err(|error| Failure::of_import("stress", &error))?;
-    options.console.warn_all(&imported.warnings);
-    let camera = imported.scene.cameras.first().ok_or_else(|| {
-        Failure::job(format_args!(
-            "{}: there is no camera to look through",
-            path.display()
-        ))
-    })?;
+    let mut import_options = SceneOptions::default();
+    ask_for_size(&mut import_options, options.size);
+    let imported = load_scene("stress", path, &import_options, options.console)?;
+    let camera = camera(&imported.scene, path)?;
     let mut settings = imported.settings.clone();
     settings.sampling.samples = options.samples;
     let command = format!(

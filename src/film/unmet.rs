@@ -206,10 +206,7 @@ mod tests {
                 let stated = ErrorEstimate::of(&pixels, WIDTH as usize).expect("there are halves");
                 below += u64::from(truth < stated.low);
                 above += u64::from(truth > stated.high);
-                let mut sums = ErrorSums::default();
-                for pixel in &pixels {
-                    sums.add(pixel.relative_squared_error().unwrap_or(0.0));
-                }
+                let sums = ErrorSums::of(&pixels).expect("there are halves");
                 let stated = sums.estimate().expect("there are pixels");
                 plain += u64::from(stated.low <= truth && truth <= stated.high);
             }

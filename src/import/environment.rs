@@ -5,12 +5,10 @@ use std::io::Cursor;
 use std::path::Path;
 
 #[cfg(feature = "exr")]
-use exr::prelude::{
-    MetaData, ReadChannels, ReadLayers, ReadSpecificChannel, Vec2, read as read_exr,
-};
+use exr::prelude::{MetaData, Vec2};
 
 #[cfg(feature = "exr")]
-use super::exr_room::check_exr_size;
+use super::exr_file::{check_exr_size, read_exr_colors};
 use super::{ImportError, files, images};
 use crate::color::{Rgb, srgb8_to_linear};
 use crate::light::Environment;
@@ -81,26 +79,7 @@ impl<'a> EnvironmentFile<'a> {
 
     #[cfg(feature = "exr")]
     fn exr_pixels(&self) -> Result<([u32; 2], Vec<[f32; 3]>), ImportError> {
-        let image = read_exr()
-            .no_deep_data()
-            .largest_resolution_level()
-            .specific_channels()
-            .required("R")
-            .required("G")
-            .required("B")
-            .collect_pixels(
-                |Vec2(width, height), _| (width, vec![[0.0; 3]; width * height]),
-                |(width, pixels), Vec2(x, y), (r, g, b): (f32, f32, f32)| {
-                    pixels[y * *width + x] = [r, g, b];
-                },
-            )
-            .first_valid_layer()
-            .all_attributes()
-            .from_buffered(Cursor::new(&self.bytes))
-            .map_err(|error| self.damaged(&error.to_string()))?;
-        let (width, pixels) = image.layer_data.channel_data.pixels;
-        let height = pixels.len() / width.max(1);
-        Ok(([width as u32, height as u32], pixels))
+        read_exr_colors(Cursor::new(&self.bytes)).map_err(|error| self.damaged(&error.to_string()))
     }
 
     /// Of a build that cannot read such files.

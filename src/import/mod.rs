@@ -8,7 +8,7 @@ mod budget;
 mod census;
 mod environment;
 #[cfg(feature = "exr")]
-mod exr_room;
+mod exr_file;
 mod files;
 #[cfg(feature = "gltf")]
 mod gltf;
@@ -29,7 +29,7 @@ use thiserror::Error;
 
 use crate::scene::{Keep, LeftOut, Needs, Scene, Settings};
 #[cfg(feature = "exr")]
-pub use exr_room::{ExrSizeError, check_exr_size};
+pub use exr_file::{SizeError, check_exr_size, check_size, read_exr_colors};
 #[cfg(feature = "gltf")]
 pub use gltf::{ExtensionSupport, Support, extension_table};
 pub use scene_file::{Defaults, SceneOptions};

@@ -105,8 +105,7 @@ impl<'a> LightSurfaces<'a> {
 
 /// A box larger by what its own coordinates may bring: far lights are not to blur those that are near.
 fn grown(bounds: &Aabb) -> Aabb {
-    let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
-    let slack = Vec3::splat(SLACK * reach);
+    let slack = Vec3::splat(SLACK * bounds.reach());
     Aabb {
         min: (bounds.min - slack).max(Vec3::splat(f32::MIN)),
         max: (bounds.max + slack).min(Vec3::splat(f32::MAX)),

@@ -18,7 +18,7 @@ use super::microfacet::Ggx;
 use super::sheen::SheenLayer;
 use crate::color::Rgb;
 use crate::math::{Vec2, Vec3};
-use crate::sampling::square_to_disk;
+use crate::sampling::square_to_hemisphere;
 
 /// More than tabulated albedos were found to be too low; that much of what they leave is left out.
 const TABLE_ERROR: f32 = 1e-3;
@@ -380,9 +380,9 @@ impl Layered {
                 }
             }
             _ => {
-                let disk = square_to_disk(u);
-                let z = (1.0 - disk.length_squared()).max(0.0).sqrt();
-                Some(Drawn::Area(disk.extend(if lobe == 4 { z } else { -z })))
+                let wi = square_to_hemisphere(u);
+                let z = if lobe == 4 { wi.z } else { -wi.z };
+                Some(Drawn::Area(Vec3 { z, ..wi }))
             }
         }
     }

@@ -8,7 +8,7 @@ use super::layered::{Drawn, Pair};
 use super::phong::{around_mirror, phong_pdf};
 use crate::color::Rgb;
 use crate::math::{UnitVec3, Vec2, Vec3};
-use crate::sampling::square_to_disk;
+use crate::sampling::square_to_hemisphere;
 
 /// A direction that light may have come from.
 #[derive(Clone, Copy, Debug)]
@@ -117,9 +117,7 @@ impl Bsdf {
             rest < 0.0
         };
         if is_chosen(shares.matte) {
-            let disk = square_to_disk(u);
-            let z = (1.0 - disk.length_squared()).max(0.0).sqrt();
-            return Some(Drawn::Area(disk.extend(z)));
+            return Some(Drawn::Area(square_to_hemisphere(u)));
         }
         if is_chosen(shares.glossy) {
             let wi = around_mirror(wo, exponent, u);

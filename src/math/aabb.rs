@@ -54,6 +54,11 @@ impl Aabb {
         0.5 * self.min + 0.5 * self.max
     }
 
+    /// Largest magnitude of a coordinate of its corners; infinite where it is empty.
+    pub fn reach(&self) -> f32 {
+        self.min.abs().max(self.max.abs()).max_element()
+    }
+
     /// Half its surface: what the surface area heuristic compares
     /// (Goldsmith and Salmon 1987, "Automatic Creation of Object Hierarchies for Ray Tracing").
     pub fn half_area(&self) -> f32 {
@@ -71,5 +76,21 @@ impl Aabb {
         } else {
             2
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_reach_is_that_of_the_farthest_coordinate_on_either_side() {
+        let corners = [Vec3::new(-7.0, 1.0, 2.0), Vec3::new(-3.0, 5.0, 2.5)];
+        let bounds = Aabb::of_points(corners);
+        assert_eq!(bounds.reach(), 7.0);
+        assert_eq!(Aabb::of_points(corners.map(|p| -p)).reach(), 7.0);
+        assert_eq!(bounds.including(8.0 * Vec3::Y).reach(), 8.0);
+        assert_eq!(Aabb::of_points([Vec3::ZERO]).reach(), 0.0);
+        assert_eq!(Aabb::EMPTY.reach(), f32::INFINITY);
     }
 }

@@ -205,7 +205,9 @@ impl Allotment {
             .collect();
         let film_factor = {
             let sum = |f: fn(&Measured) -> f64| measured.iter().map(f).sum::<f64>();
-            sum(|m| m.error) / sum(|m| m.model).max(f64::MIN_POSITIVE)
+            let (error, model) = (sum(|m| m.error), sum(|m| m.model));
+            // Without any variance no half has a weight, whatever the halves differ by.
+            if model > 0.0 { error / model } else { 0.0 }
         };
         let allotted: Vec<_> = measured
             .into_par_iter()
@@ -339,7 +341,7 @@ impl<'a> Measured<'a> {
         difficulty: &Difficulty,
         exponent: f64,
     ) -> Self {
-        let (mut error, mut model, mut squares) = (0.0, 0.0, 0.0);
+        let (mut model, mut squares) = (0.0, 0.0);
         let mut of_tile = Vec::with_capacity(tile.taken.len());
         let mut fall = Fall::new(exponent);
         for (place, &taken) in tile.rect().pixels().zip(&tile.taken) {
@@ -350,11 +352,14 @@ impl<'a> Measured<'a> {
                 .zip(taken)
                 .map(|(&d, n)| 0.25 * f64::from(d) * fall.to(n.max(1)))
                 .sum();
-            error += pixels[i].relative_squared_error().unwrap_or(0.0);
             model += expected;
             squares += expected * expected;
             of_tile.push(of);
         }
+        // A tile has no sums where a pixel has nothing to say.
+        let error_of = |place| pixels[film.index(place)].relative_squared_error();
+        let summed = || tile.rect().pixels().filter_map(error_of).sum();
+        let error = tile.error.map_or_else(summed, |sums| sums.sum());
         Self {
             tile,
             difficulty: of_tile,
@@ -385,6 +390,8 @@ impl<'a> Measured<'a> {
         };
         let cost = (self.tile.rays.total() as f64 / taken(self.tile).max(1.0)).max(1.0);
         let power = STEPS_PER_OCTAVE as f32 / (1.0 + exponent as f32);
+        // Never NaN: difficulties are finite, and so is the factor, whose divisors are above 0 (those of relMSE are where no
+        // radiance is negative).
         let weigh = |d: f32| (0.25 * factor * f64::from(d)).clamp(0.0, f32::MAX.into()) as f32;
         let mut shares = Vec::with_capacity(2 * self.difficulty.len());
         let mut weights = Vec::with_capacity(2 * self.difficulty.len());
@@ -434,5 +441,60 @@ impl Fall {
             self.last = (samples, f64::from(samples).powf(-self.exponent));
         }
         self.last.1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::color::Rgb;
+    use crate::film::ErrorSums;
+    use crate::math::UVec2;
+
+    /// The allotment of a row of pixels with so many samples a half.
+    fn allotment(pixels: &[Pixel], taken: u32) -> (Allotment, [Tile; 1]) {
+        let film = Rect::full(UVec2::new(pixels.len() as u32, 1));
+        let mut tiles = [Tile::new(film, &[])];
+        tiles[0].taken.fill([taken; 2]);
+        let without_sums = Allotment::new(film, pixels, &tiles, Pattern::Random, 1, 1.0);
+        tiles[0].error = ErrorSums::of(pixels);
+        let allotment = Allotment::new(film, pixels, &tiles, Pattern::Random, 1, 1.0);
+        assert_eq!(without_sums.now().error, allotment.now().error);
+        (allotment, tiles)
+    }
+
+    fn pixel(halves: [&[f32]; 2]) -> Pixel {
+        let mut pixel = Pixel::default();
+        for (half, values) in halves.into_iter().enumerate() {
+            for &value in values {
+                pixel.add_sample(half, Rgb::splat(value));
+            }
+        }
+        pixel
+    }
+
+    /// Squares of single samples overflow, first those of dark pixels beside it, then those of the pixel itself.
+    #[test]
+    fn the_brightest_pixel_there_can_be_draws_samples_and_leaves_a_forecast() {
+        for bright in [1e9, 1e19, 1e30, f32::MAX] {
+            let mut pixels = vec![pixel([&[0.1], &[0.2]]); 9];
+            pixels[1] = pixel([&[bright], &[bright]]);
+            let (allotment, mut tiles) = allotment(&pixels, 1);
+            let [now, then] = [allotment.now(), allotment.at(1e4)].map(|outcome| outcome.error);
+            let falls = 0.0 < then && then < now && now < f64::INFINITY;
+            assert!(falls, "{bright}: {now} {then}");
+            let [scale, _] = allotment.scales(|outcome| outcome.samples < 1000);
+            allotment.aim(&mut tiles, scale);
+            let goal = &tiles[0].goal;
+            assert!(goal[0][0] > 2 * goal[7][0], "{bright}: {goal:?}");
+        }
+    }
+
+    /// The samples of a half are alike, and the halves differ: no variance explains it.
+    #[test]
+    fn halves_that_differ_without_a_variance_have_no_weight() {
+        let pixels = vec![pixel([&[0.0, 0.0], &[1e3, 1e3]]); 9];
+        let (allotment, _) = allotment(&pixels, 2);
+        assert_eq!(allotment.now().error, 0.0);
     }
 }

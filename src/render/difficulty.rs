@@ -15,7 +15,11 @@ const HIGH: f32 = 4.0;
 /// the same, they agree while the error is larger than their difference says. Neighbours have no part in that.
 const LOW: f32 = 32.0;
 
-/// How varied the samples of each half of each pixel are, over what the metric divides by.
+/// Nothing counts as more varied: neither the sum over the pixels around nor the product with a number of samples, which
+/// is below 2^32, overflows.
+const MOST: f32 = 1e28;
+
+/// How varied the samples of each half of each pixel are, over what the metric divides by; finite, and not below 0.
 pub(super) struct Difficulty {
     /// By pixel, row by row, as all that follow.
     halves: Vec<[f32; 2]>,
@@ -58,7 +62,16 @@ impl Difficulty {
 fn variation(half: &Moments) -> Option<f32> {
     let weights = relative_weights(half.mean());
     let weighted = half.sample_variance().into_iter().zip(weights);
-    (half.count() > 1).then(|| weighted.map(|(v, w)| v * w).sum::<f64>() as f32)
+    (half.count() > 1).then(|| held(weighted.map(|(v, w)| v * w).sum::<f64>() as f32))
+}
+
+/// Held to [`MOST`], which is what overflows count for as well, be they infinite or NaN.
+fn held(variation: f32) -> f32 {
+    if variation < MOST {
+        variation.max(0.0)
+    } else {
+        MOST
+    }
 }
 
 /// How varied the samples of each half are; where it has but one, those of the pixels around.
@@ -84,10 +97,10 @@ fn variations(film: Rect, pixels: &[Pixel]) -> Vec<[f32; 2]> {
         [0, 1].map(|half| {
             let [r, g, b, squares] = [0, 1, 2, 3].map(|k| sums[4 * half + k]);
             let of_means = (r * r + g * g + b * b) / count;
-            let spread = ((squares - of_means) / f32::max(count - 1.0, 1.0)).max(0.0);
+            let spread = (squares - of_means) / f32::max(count - 1.0, 1.0);
             let half = &pixels[i].halves()[half];
             let weights = || relative_weights(half.mean()).iter().sum::<f64>() / 3.0;
-            variation(half).unwrap_or_else(|| weights() as f32 * spread)
+            variation(half).unwrap_or_else(|| held(weights() as f32 * spread))
         })
     })
 }

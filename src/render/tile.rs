@@ -45,7 +45,7 @@ pub(super) struct Tile {
 }
 
 impl Tile {
-    fn new(rect: Rect, layers: &[Aov]) -> Self {
+    pub fn new(rect: Rect, layers: &[Aov]) -> Self {
         let area = rect.area() as usize;
         Self {
             rect,

@@ -18,7 +18,7 @@ use thiserror::Error;
 
 use super::Picture;
 use crate::color::{Rgb, srgb_to_linear, srgb8_to_linear};
-use crate::import::{ExrSizeError, check_exr_size};
+use crate::import::{SizeError, check_exr_size, check_size, read_exr_colors};
 use crate::math::UVec2;
 use crate::scene::MAX_PIXELS;
 
@@ -53,30 +53,31 @@ pub enum ReadProblem {
     /// It begins like something else.
     #[error("is neither a PNG nor an EXR picture")]
     OtherFormat,
-    /// It has more pixels than a picture may have.
-    #[error("has {width} × {height} pixels, which are more than {MAX_PIXELS}")]
-    TooLarge {
-        /// Columns.
-        width: u64,
-        /// Rows.
-        height: u64,
-    },
-    /// It says that it has more pixels than so few bytes can hold.
-    #[error("says that it has {width} × {height} pixels, which do not fit into its {bytes} bytes")]
-    TooShort {
-        /// Columns.
-        width: u64,
-        /// Rows.
-        height: u64,
-        /// Length of the file.
-        bytes: u64,
-    },
+    /// It says that it has more pixels than there can be.
+    #[error("{}", claim(.0))]
+    Size(#[from] SizeError),
     /// An EXR file of other layers.
     #[error("has neither the channels R, G and B nor the channel Y")]
     NoColors,
     /// The decoder does not accept it.
     #[error("is damaged or not supported: {0}")]
     Invalid(String),
+}
+
+/// What a file with too many pixels says of itself.
+fn claim(error: &SizeError) -> String {
+    match error {
+        SizeError::TooLarge { width, height } => {
+            format!("has {width} × {height} pixels, which are more than {MAX_PIXELS}")
+        }
+        SizeError::TooShort {
+            width,
+            height,
+            bytes,
+        } => format!(
+            "says that it has {width} × {height} pixels, which do not fit into its {bytes} bytes"
+        ),
+    }
 }
 
 /// Reads the PNG or EXR file at `path`.
@@ -114,7 +115,9 @@ fn png(file: BufReader<File>, bytes: u64) -> Result<Opened, ReadProblem> {
         .into_decoder()
         .map_err(invalid)?;
     let (width, height) = decoder.dimensions();
-    check_png_size(width.into(), height.into(), bytes)?;
+    // In the longest runs of deflate, 1,032 bytes to one, of pixels of a bit.
+    let most = bytes.saturating_mul(8 * 1032);
+    check_size([width.into(), height.into()], most, bytes)?;
     let mut limits = Limits::default();
     // Four channels of 16 bits, and a copy.
     limits.max_alloc = Some(2 * 8 * MAX_PIXELS);
@@ -137,22 +140,6 @@ fn png(file: BufReader<File>, bytes: u64) -> Result<Opened, ReadProblem> {
         },
         has_other_primaries: false,
     })
-}
-
-fn check_png_size(width: u64, height: u64, bytes: u64) -> Result<(), ReadProblem> {
-    let pixels = width.saturating_mul(height);
-    if pixels > MAX_PIXELS {
-        return Err(ReadProblem::TooLarge { width, height });
-    }
-    // In the longest runs of deflate, 1,032 bytes to one, of pixels of a bit.
-    if pixels > bytes.saturating_mul(8 * 1032) {
-        return Err(ReadProblem::TooShort {
-            width,
-            height,
-            bytes,
-        });
-    }
-    Ok(())
 }
 
 fn exr(mut file: BufReader<File>, bytes: u64) -> Result<Opened, ReadProblem> {
@@ -183,22 +170,11 @@ fn exr(mut file: BufReader<File>, bytes: u64) -> Result<Opened, ReadProblem> {
 }
 
 fn colors(file: BufReader<File>) -> Result<Picture, ReadProblem> {
-    let image = read_exr()
-        .no_deep_data()
-        .largest_resolution_level()
-        .specific_channels()
-        .required("R")
-        .required("G")
-        .required("B")
-        .collect_pixels(
-            |size, _| black(size),
-            |picture, at, (r, g, b): (f32, f32, f32)| put(picture, at, Rgb::new(r, g, b)),
-        )
-        .first_valid_layer()
-        .all_attributes()
-        .from_buffered(file)
-        .map_err(exr_problem)?;
-    Ok(image.layer_data.channel_data.pixels)
+    let ([width, height], pixels) = read_exr_colors(file).map_err(exr_problem)?;
+    Ok(Picture {
+        size: UVec2::new(width, height),
+        pixels,
+    })
 }
 
 fn greys(file: BufReader<File>) -> Result<Picture, ReadProblem> {
@@ -208,43 +184,20 @@ fn greys(file: BufReader<File>) -> Result<Picture, ReadProblem> {
         .specific_channels()
         .required("Y")
         .collect_pixels(
-            |size, _| black(size),
-            |picture, at, (y,): (f32,)| put(picture, at, Rgb::splat(y)),
+            |Vec2(width, height), _| Picture {
+                // Within MAX_PIXELS: the header was checked.
+                size: UVec2::new(width as u32, height as u32),
+                pixels: vec![Rgb::BLACK; width * height],
+            },
+            |picture, Vec2(x, y), (grey,): (f32,)| {
+                picture.pixels[y * picture.size.x as usize + x] = Rgb::splat(grey);
+            },
         )
         .first_valid_layer()
         .all_attributes()
         .from_buffered(file)
         .map_err(exr_problem)?;
     Ok(image.layer_data.channel_data.pixels)
-}
-
-fn black(Vec2(width, height): Vec2<usize>) -> Picture {
-    // Within MAX_PIXELS: the header was checked.
-    Picture {
-        size: UVec2::new(width as u32, height as u32),
-        pixels: vec![Rgb::BLACK; width * height],
-    }
-}
-
-fn put(picture: &mut Picture, Vec2(x, y): Vec2<usize>, color: Rgb) {
-    picture.pixels[y * picture.size.x as usize + x] = color;
-}
-
-impl From<ExrSizeError> for ReadProblem {
-    fn from(error: ExrSizeError) -> Self {
-        match error {
-            ExrSizeError::TooLarge { width, height } => Self::TooLarge { width, height },
-            ExrSizeError::TooShort {
-                width,
-                height,
-                bytes,
-            } => Self::TooShort {
-                width,
-                height,
-                bytes,
-            },
-        }
-    }
 }
 
 fn is_rec_709(c: &Chromaticities) -> bool {

@@ -15,4 +15,4 @@ pub use key::mix;
 pub use pattern::{Pattern, SamplingConfig, Target};
 pub use row::SamplerRow;
 pub use sampler::{Sampler, Samplers};
-pub use warp::{square_to_cone, square_to_disk};
+pub use warp::{square_to_cone, square_to_disk, square_to_hemisphere};

@@ -2,13 +2,22 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use crate::math::{DVec2, DVec3, Vec2, lesser};
+use crate::math::{DVec2, DVec3, Vec2, Vec3, lesser};
 
 /// The unit disk, uniform by area; squares around the middle become circles
 /// (Shirley and Chiu 1997, "A Low Distortion Map Between Disk and Square").
 #[inline(always)]
 pub fn square_to_disk(u: Vec2) -> Vec2 {
     exact_disk(u).as_vec2()
+}
+
+/// Unit vectors around +z, as many by solid angle as their cosine with it: the disk, raised to the sphere above
+/// (Pharr, Jakob and Humphreys 2016, "Physically Based Rendering", 13.6.3, who name Malley for it). Their density is
+/// the cosine / π.
+#[inline(always)]
+pub fn square_to_hemisphere(u: Vec2) -> Vec3 {
+    let disk = square_to_disk(u);
+    disk.extend((1.0 - disk.length_squared()).max(0.0).sqrt())
 }
 
 /// [`square_to_disk`] before it is rounded, without a branch.

@@ -56,6 +56,10 @@ pub struct Case {
 }
 
 impl Case {
+    const fn new(id: &'static str, name: &'static str, run: fn(Effort) -> Vec<Check>) -> Self {
+        Self { id, name, run }
+    }
+
     /// Tries it. The same effort gives the same report, but for what is measured in seconds (G3).
     pub fn run(&self, effort: Effort) -> Report {
         Report {

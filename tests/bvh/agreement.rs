@@ -32,7 +32,12 @@ fn agreed(trees: &[(String, Bvh)], ray: &Ray) -> Option<Hit> {
             "{name} against {}: {ray:?}",
             trees[0].0
         );
-        assert_eq!(tree.any_hit(ray), hit.is_some(), "any hit, {name}: {ray:?}");
+        // Where somebody is to be asked no hit is held without the exact test.
+        let asked = tree.closest_hit_if(ray, |_| true);
+        assert_eq!(bits(asked), bits(hit), "asked, {name}: {ray:?}");
+        for any in [tree.any_hit(ray), tree.any_hit_if(ray, |_| true)] {
+            assert_eq!(any, hit.is_some(), "any hit, {name}: {ray:?}");
+        }
     }
     hit
 }
@@ -145,17 +150,23 @@ fn rays_that_are_not_numbers_hit_nothing() {
                 assert!(bad.iter().all(|ray| !tree.any_hit(ray)), "{name}");
             }
         }
-        let nowhere = Ray {
-            t_min: 2.0,
-            t_max: 1.0,
-            ..Ray::new(Vec3::ZERO, Vec3::X)
-        };
-        assert!(!tree.any_hit(&nowhere));
-        let unknown = Ray {
-            t_max: f32::NAN,
-            ..Ray::new(Vec3::ZERO, Vec3::X)
-        };
-        assert!(!tree.any_hit(&unknown));
+    }
+    let trees = sphere(2).trees();
+    for direction in [Vec3::X, Vec3::new(0.9, 0.3, 0.2)] {
+        for [t_min, t_max] in [
+            [2.0, 1.0],
+            [0.0, f32::NAN],
+            [0.0; 2],
+            [0.0, -1.0],
+            [-3.0, -0.5],
+        ] {
+            let nowhere = Ray {
+                t_min,
+                t_max,
+                ..Ray::new(Vec3::ZERO, direction)
+            };
+            assert_eq!(agreed(&trees, &nowhere), None, "{nowhere:?}");
+        }
     }
 }
 

@@ -115,6 +115,27 @@ fn counting_changes_no_hit() {
     }
 }
 
+/// What is certain to be hit is held until the end.
+#[test]
+fn most_rays_take_the_exact_test_once() {
+    let mesh = sphere(5);
+    for (name, tree) in mesh.trees() {
+        if name.starts_with("none") {
+            continue; // once for each block
+        }
+        let mut counts = TraversalCounts::default();
+        let rays = mesh.rays(3000, 54);
+        let hits = rays
+            .iter()
+            .filter(|ray| tree.closest_hit_counted(ray, &mut counts).is_some());
+        let hits = hits.count() as f64;
+        assert!(
+            hits > 500.0 && (counts.triangles as f64) < 1.2 * hits,
+            "{name}: {hits} {counts:?}"
+        );
+    }
+}
+
 #[test]
 fn stats_tell_the_shape() {
     let mesh = terrain(100);

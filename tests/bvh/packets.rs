@@ -27,12 +27,15 @@ fn check_in(tree: &Bvh, rays: &[Ray], name: &str) -> f64 {
         .unzip();
     for (i, ray) in rays.iter().enumerate() {
         let alone = tree.closest_hit(ray);
+        let asked = tree.closest_hit_if(ray, |_| true);
         // `Debug` shows every bit of a float.
-        assert_eq!(
-            format!("{:?}", hits[i]),
-            format!("{alone:?}"),
-            "{name}, ray {i}: {ray:?}"
-        );
+        for hit in [hits[i], asked] {
+            assert_eq!(
+                format!("{hit:?}"),
+                format!("{alone:?}"),
+                "{name}, ray {i}: {ray:?}"
+            );
+        }
         assert_eq!(blocked[i], alone.is_some(), "{name}, ray {i}: {ray:?}");
     }
     hits.iter().flatten().count() as f64 / rays.len() as f64
@@ -242,12 +245,32 @@ fn where_single_precision_ends() {
     };
     let low = 2f32.powi(-110) * (1.0 + 2f32.powi(-12));
     let flat = [[-1.0, -1.0, low], [1.0, -1.0, low], [0.0, 1.0, low]].map(Vec3::from);
-    one(flat, Ray::new(Vec3::ZERO, 2f32.powi(29) * Vec3::Z));
+    let oblique = Vec3::new(2f32.powi(-12), 2f32.powi(-13), 1.0);
+    for direction in [Vec3::Z, oblique] {
+        // Its parameter is rounded to another depth.
+        let (is_hit, _) = one(flat, Ray::new(Vec3::ZERO, 2f32.powi(29) * direction));
+        assert!(!is_hit);
+    }
 
-    let s = 2f32.powi(44);
-    let huge = [[0.0, 1.0, 1.0], [-1.0, -1.0, 1.0], [1.0, -1.0, 0.5]].map(|p| s * Vec3::from(p));
-    let (is_hit, _) = one(huge, Ray::new(Vec3::ZERO, Vec3::Z));
-    assert!(is_hit);
+    // Sums for depths overflow, to either side.
+    for (s, z) in [
+        (44, [1.0, 1.0, 0.5]),
+        (43, [0.5, 1.0, 1.0]),
+        (48, [0.5, 1.0, 1.0]),
+    ] {
+        let s = 2f32.powi(s);
+        let huge = [[0.0, 1.0, z[0]], [-1.0, -1.0, z[1]], [1.0, -1.0, z[2]]];
+        for direction in [Vec3::Z, Vec3::new(0.01, 0.02, 1.0)] {
+            for t_max in [f32::INFINITY, 8.0 * s] {
+                let ray = Ray {
+                    t_max,
+                    ..Ray::new(Vec3::ZERO, direction)
+                };
+                let (is_hit, _) = one(huge.map(|p| s * Vec3::from(p)), ray);
+                assert!(is_hit);
+            }
+        }
+    }
 
     let edge = [[0.0; 3], [1.0, 0.5, 0.0], [-1.0, -15.0 / 32.0, 1.0]].map(Vec3::from);
     let origin = Vec3::new(0.0, -2f32.powi(-49), -2f32.powi(-45));

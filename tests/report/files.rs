@@ -8,6 +8,7 @@ use exr::prelude::{
     Vec2, WritableImage, f16,
 };
 use halfshade::color::{Rgb, srgb_to_linear, srgb8_to_linear};
+use halfshade::import::SizeError;
 use halfshade::math::UVec2;
 use halfshade::output::exr::{self as exr_file, Layer as OurLayer, Values, Window};
 use halfshade::output::png::{self as png_file, PngBits, PngOptions};
@@ -242,12 +243,16 @@ fn a_small_file_cannot_claim_more_pixels_than_a_picture_has() {
     assert!(
         matches!(
             error,
-            ReadProblem::TooLarge {
+            ReadProblem::Size(SizeError::TooLarge {
                 width: 65536,
                 height: 65536
-            }
+            })
         ),
         "{error}"
+    );
+    assert_eq!(
+        error.to_string(),
+        "has 65536 × 65536 pixels, which are more than 268435456"
     );
 }
 
@@ -258,8 +263,14 @@ fn a_file_cannot_claim_more_pixels_than_its_bytes_can_hold() {
     for name in ["many-pixels", "many-channels", "many-channels-dwaa"] {
         let error = problem(&Path::new(seeds).join(name));
         assert!(
-            matches!(error, ReadProblem::TooShort { .. }),
+            matches!(error, ReadProblem::Size(SizeError::TooShort { .. })),
             "{name}: {error}"
+        );
+        let message = error.to_string();
+        assert!(message.starts_with("says that it has "), "{message}");
+        assert!(
+            message.contains(" pixels, which do not fit into its "),
+            "{message}"
         );
     }
 }

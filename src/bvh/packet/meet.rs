@@ -2,7 +2,7 @@
 
 use super::{FEW, Packet, row};
 use crate::bvh::beam::{BeamTest, bounds};
-use crate::bvh::filter::{Certain, Filter};
+use crate::bvh::filter::{Certain, Filter, corners_in};
 use crate::bvh::hit::Hit;
 use crate::bvh::layout::Tree;
 use crate::bvh::simd::Lanes;
@@ -71,13 +71,7 @@ impl Packet<'_> {
         group: usize,
     ) -> bool {
         let block = &tree.blocks[place];
-        let [x, y, z] = self.course.axes;
-        let [a, b, c] = &block.corners;
-        let corners = [
-            [S::load(&a[x]), S::load(&a[y]), S::load(&a[z])],
-            [S::load(&b[x]), S::load(&b[y]), S::load(&b[z])],
-            [S::load(&c[x]), S::load(&c[y]), S::load(&c[z])],
-        ];
+        let corners = corners_in::<S, W>(block, self.course.axes);
         let mut is_found = false;
         while rays != 0 {
             let lane = rays.trailing_zeros() as usize % W;
@@ -110,48 +104,23 @@ impl Packet<'_> {
                     continue;
                 }
                 doubtful = lanes;
-            } else {
-                is_found |= self.hold_nearest(&certain, sure, &mut doubtful, i, place);
+            } else if sure != 0 {
+                let end = self.ahead(self.depth[self.far_end][i]);
+                let nearest = certain.nearest(sure, self.surely[i], end);
+                if let Some(lane) = nearest.lane {
+                    self.holds |= 1 << i;
+                    self.held[i] = (place * W + lane) as u32;
+                    self.surely[i] = nearest.surely;
+                    self.depth[self.far_end][i] = self.ahead(nearest.end);
+                    is_found = true;
+                }
+                doubtful |= nearest.doubtful;
             }
             if doubtful != 0 {
                 doubtful &= !filter.certainly_behind(&corners, &seen);
             }
             if doubtful != 0 {
                 is_found |= self.look_at::<ANY, W>(tree, place, doubtful, i);
-            }
-        }
-        is_found
-    }
-
-    /// Lets ray `i` hold the nearest of the triangles `sure` of a block; those that are too close to another one to tell
-    /// are `doubtful`.
-    #[inline(always)]
-    fn hold_nearest<S: Lanes<W>, const W: usize>(
-        &mut self,
-        certain: &Certain<S>,
-        mut sure: u32,
-        doubtful: &mut u32,
-        i: usize,
-        place: usize,
-    ) -> bool {
-        if sure == 0 {
-            return false;
-        }
-        let (mut near, mut far) = ([0.0; W], [0.0; W]);
-        certain.near.store(&mut near);
-        certain.far.store(&mut far);
-        let mut is_found = false;
-        while sure != 0 {
-            let lane = sure.trailing_zeros() as usize % W;
-            sure &= sure - 1;
-            if far[lane] < self.surely[i] {
-                self.holds |= 1 << i;
-                self.held[i] = (place * W + lane) as u32;
-                self.surely[i] = near[lane];
-                self.depth[self.far_end][i] = self.ahead(far[lane]);
-                is_found = true;
-            } else if near[lane] <= self.ahead(self.depth[self.far_end][i]) {
-                *doubtful |= 1 << lane;
             }
         }
         is_found
@@ -243,7 +212,7 @@ impl Packet<'_> {
             return self.look::<ANY, W>(corners, triangle, group, lanes);
         }
         let [a, b, c] = corners;
-        let crossings = self.cross::<W>(&[all(a), all(b), all(c)], group);
+        let crossings = self.cross::<false, W>(&[all(a), all(b), all(c)], group);
         let mut is_found = false;
         let mut hits = lanes & crossings.is_hit;
         while hits != 0 {

@@ -204,14 +204,18 @@ impl<'a> Packet<'a> {
 
     /// The exact test of a triangle for each ray of a group.
     #[inline(always)]
-    fn cross<const W: usize>(&self, corners: &Corners<W>, group: usize) -> Crossings<W> {
+    fn cross<const CERTAIN: bool, const W: usize>(
+        &self,
+        corners: &Corners<W>,
+        group: usize,
+    ) -> Crossings<W> {
         let [ox, oy, oz] = &self.origin;
         let [dx, dy, dz] = &self.direction;
         let rays = ExactRays::<W> {
             origin: [array(ox, group), array(oy, group), array(oz, group)],
             direction: [array(dx, group), array(dy, group), array(dz, group)],
         };
-        rays.cross(corners)
+        rays.cross::<CERTAIN>(corners)
     }
 
     /// Keeps `hit` of ray `i` where it is better than what that has; whether it is.
@@ -240,9 +244,8 @@ impl<'a> Packet<'a> {
             rays &= rays - 1;
             let (block, lane) = self.place::<W>(tree, i);
             let corners = block.corners_of(lane, self.course.axes);
-            if let Some(crossing) = self.exact(i).cross(&corners) {
-                self.keep::<false>(i, &Hit::of(crossing, 0, block.triangles[lane]));
-            }
+            let crossing = self.exact(i).cross_certain(&corners);
+            self.keep::<false>(i, &Hit::of(crossing, 0, block.triangles[lane]));
         }
     }
 
@@ -265,11 +268,15 @@ impl<'a> Packet<'a> {
                     }
                 }
             }
-            let crossings = self.cross::<W>(&corners, group);
-            debug_assert_eq!(held & !crossings.is_hit, 0, "what is certain is hit");
+            debug_assert_eq!(
+                held & !self.cross::<false, W>(&corners, group).is_hit,
+                0,
+                "what is certain is hit"
+            );
+            let crossings = self.cross::<true, W>(&corners, group);
             for lane in 0..W {
                 let i = group * W + lane;
-                if (held & crossings.is_hit) >> lane & 1 != 0 {
+                if held >> lane & 1 != 0 {
                     let (block, place) = self.place(tree, i);
                     let hit = Hit::of(crossings.get(lane), 0, block.triangles[place]);
                     self.found.set(i, &hit);

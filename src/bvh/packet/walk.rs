@@ -8,7 +8,7 @@ use super::{Packet, SIZE};
 use crate::bvh::beam::BeamTest;
 use crate::bvh::hit::HitRow;
 use crate::bvh::layout::{ChildRef, Tree};
-use crate::bvh::simd::{Entry, Job, Lanes, Stack, prefetch};
+use crate::bvh::simd::{Entry, Job, Lanes, Waiting, prefetch};
 use crate::bvh::traverse::nearest_child;
 use crate::math::RayRow;
 
@@ -83,7 +83,8 @@ impl<const ANY: bool, const W: usize> Job<W> for Together<'_, ANY, W> {
         let mut far = greatest(&fars);
         let mut looks = 0;
         let mut rest = 0;
-        let mut stack = Stack::new();
+        let mut waiting = Waiting::new();
+        let mut stack = waiting.stack();
         stack.push(Entry::new(0.0, ChildRef::node(0)));
         while let Some(entry) = stack.pop() {
             if entry.distance() > far {

@@ -15,7 +15,7 @@ mod x86;
 pub(super) use large_pages::prefer_large_pages;
 pub(super) use portable::Portable;
 pub(super) use prefetch::prefetch;
-pub(super) use stack::{Entry, Stack};
+pub(super) use stack::{Entry, Stack, Waiting};
 
 /// A vector of `W` floats.
 ///

@@ -34,22 +34,48 @@ impl Entry {
     }
 }
 
-/// Children still to be visited, nearest last.
-pub(in crate::bvh) struct Stack {
+/// Children still to be visited, between two walks.
+pub(in crate::bvh) struct Waiting {
     /// Clearing these kilobytes would cost as much as several node visits, so they are left as
     /// they are and only what was pushed is read.
     entries: [MaybeUninit<Entry>; CAPACITY],
     length: usize,
 }
 
-impl Stack {
-    /// Empty.
+impl Waiting {
+    /// None.
     #[inline(always)]
     pub fn new() -> Self {
         Self {
             entries: [const { MaybeUninit::uninit() }; CAPACITY],
             length: 0,
         }
+    }
+
+    /// For a walk, which [keeps](Stack::keep) them.
+    #[inline(always)]
+    pub fn stack(&mut self) -> Stack<'_> {
+        Stack {
+            entries: &mut self.entries,
+            length: self.length,
+            kept: &mut self.length,
+        }
+    }
+}
+
+/// Children still to be visited, nearest last.
+pub(in crate::bvh) struct Stack<'a> {
+    entries: &'a mut [MaybeUninit<Entry>; CAPACITY],
+    /// By itself, to be in a register.
+    length: usize,
+    kept: &'a mut usize,
+}
+
+impl Stack<'_> {
+    /// Leaves what is on it to the next walk.
+    #[inline(always)]
+    pub fn keep(self) {
+        *self.kept = self.length;
     }
 
     /// Number of entries.
@@ -91,7 +117,7 @@ impl Stack {
     fn get(&self, index: usize) -> Entry {
         debug_assert!(index <= self.length);
         // SAFETY: the callers read only below `length` (`pop` has just lowered it), and
-        // entries below `length` were written by `push` or `insert`.
+        // entries below `length` were written by `push` or `insert`, on this stack or on the one that kept that length.
         unsafe { self.entries[index].assume_init() }
     }
 }

@@ -10,13 +10,14 @@ use halfshade::bench::{
     write_hits, write_rays,
 };
 use halfshade::bvh::{Builder, Bvh, Width};
-use halfshade::import::{SceneOptions, import};
+use halfshade::import::SceneOptions;
 use halfshade::output::check_writable;
 
 use super::report;
 use super::scaling::{self, ScalingOptions};
 use crate::cli::Failure;
 use crate::cli::console::{Console, print, printable};
+use crate::cli::load::load_scene;
 use crate::cli::names;
 
 pub const COMMAND: &str = "bench bvh";
@@ -194,9 +195,7 @@ fn measure_mesh(
 }
 
 fn load(options: &BvhOptions, path: &Path) -> Result<Triangles, Failure> {
-    let imported = import(path, &SceneOptions::default())
-        .map_err(|error| Failure::of_import(COMMAND, &error))?;
-    options.console.warn_all(&imported.warnings);
+    let imported = load_scene(COMMAND, path, &SceneOptions::default(), options.console)?;
     Triangles::of_scene(&imported.scene).ok_or_else(|| {
         let name = path.display();
         Failure::job(format_args!(

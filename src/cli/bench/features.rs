@@ -6,7 +6,7 @@ use std::thread::available_parallelism;
 
 use clap::Args;
 use halfshade::bench::{FeatureCell, FeaturePlan, FeatureReport, bench_features};
-use halfshade::import::{Imported, import};
+use halfshade::import::Imported;
 use halfshade::math::UVec2;
 use halfshade::scene::{MAX_LIGHT_SAMPLES, MAX_SAMPLES, Settings};
 use serde::Serialize;
@@ -14,6 +14,7 @@ use serde::Serialize;
 use crate::cli::Failure;
 use crate::cli::arguments;
 use crate::cli::console::{Console, print, printable};
+use crate::cli::load::{ask_for_size, camera, load_scene};
 use crate::cli::options::SceneArguments;
 use crate::cli::table::{Table, number};
 
@@ -70,7 +71,7 @@ pub fn run(options: &FeatureOptions) -> Result<(), Failure> {
     let Imported {
         scene, settings, ..
     } = load(options)?;
-    let camera = options.scene.camera(&scene)?;
+    let camera = camera(&scene, &options.scene.scene)?;
     let plan = FeaturePlan {
         repeats: usize::from(options.repeats),
         limit: options.seconds,
@@ -96,14 +97,11 @@ pub fn run(options: &FeatureOptions) -> Result<(), Failure> {
 /// The scene, with settings that follow the options.
 fn load(options: &FeatureOptions) -> Result<Imported, Failure> {
     let mut import_options = options.scene.import_options();
-    // Not later: a default camera frames the scene in this size.
-    if let Some(UVec2 { x, y }) = options.size {
-        let size = ("film.size".to_owned(), format!("[{x}, {y}]"));
-        import_options.overrides.push(size);
+    if let Some(size) = options.size {
+        ask_for_size(&mut import_options, size);
     }
-    let mut imported = import(&options.scene.scene, &import_options)
-        .map_err(|error| Failure::of_import(COMMAND, &error))?;
-    options.console.warn_all(&imported.warnings);
+    let path = &options.scene.scene;
+    let mut imported = load_scene(COMMAND, path, &import_options, options.console)?;
     let Settings {
         sampling,
         light_samples,

@@ -23,7 +23,7 @@ use crate::scene::Settings;
 use super::met::LightSurfaces;
 use super::{CameraRow, Integrator, RayKind, RayLog, light_samples};
 use lights::{Lights, Place};
-use shadow::is_pane;
+use shadow::through_pane;
 use walk::{Departure, Walk, beyond};
 pub use weighing::Weighing;
 
@@ -90,7 +90,7 @@ impl<'a> PathTracer<'a> {
         if walk.throughput.is_black() {
             return false;
         }
-        if sample.is_specular && sample.is_transmitted && is_pane(surface) {
+        if sample.is_specular && sample.is_transmitted && through_pane(surface).is_some() {
             // It goes on along its ray as if nothing had happened.
             return true;
         }
@@ -180,10 +180,10 @@ impl PathTracer<'_> {
         while let Some(surface) = self.advance(&mut walk, sampler, log, &mut total) {
             if walk.scattered >= self.max_depth {
                 // Panes do not scatter: what is behind them was looked at through them as well.
-                if !is_pane(&surface) {
+                let Some(straight) = through_pane(&surface) else {
                     break;
-                }
-                walk.throughput *= surface.straight();
+                };
+                walk.throughput *= straight;
                 continue;
             }
             let at = &surface.interaction;

@@ -10,15 +10,16 @@ use crate::prepare::Surface;
 /// by the paths that go through it, and must not be counted twice.
 pub(super) fn let_through(surface: &Surface) -> Rgb {
     let opacity = surface.material.opacity(&surface.lookup);
-    let mut through = Rgb::splat(1.0 - opacity);
-    if is_pane(surface) {
-        through += surface.straight() * opacity;
-    }
-    through
+    let clear = Rgb::splat(1.0 - opacity);
+    through_pane(surface).map_or(clear, |straight| clear + straight * opacity)
 }
 
-/// Whether what `surface` lets through goes on as if nothing were there, but for its colour. A body
-/// that absorbs on the way is none.
-pub(super) fn is_pane(surface: &Surface) -> bool {
-    surface.absorption().is_none() && !surface.straight().is_black()
+/// Share of the light that goes on behind `surface` as if nothing were there, but for its colour; `None` where that
+/// is no pane. A body that absorbs on the way is none.
+pub(super) fn through_pane(surface: &Surface) -> Option<Rgb> {
+    if surface.absorption().is_some() {
+        return None;
+    }
+    let straight = surface.straight();
+    (!straight.is_black()).then_some(straight)
 }

@@ -146,10 +146,7 @@ fn by_paths(what: &str, lights: &[(Light, f64)], effort: Effort) -> Check {
         ..paths(Pattern::Random)
     };
     let worst = lights.iter().map(|(light, exact)| {
-        let size = light.surface_bounds().map_or(1.0, |bounds| {
-            let reach = bounds.min.abs().max(bounds.max.abs());
-            reach.max_element()
-        });
+        let size = light.surface_bounds().map_or(1.0, |bounds| bounds.reach());
         let mut scene = Scene::default();
         let (x, z) = (Vec3::X * size, Vec3::Z * size);
         add_quad(&mut scene, Vec3::ZERO, z, x, matte());

@@ -15,25 +15,17 @@ use super::Case;
 
 /// All of them.
 pub const CASES: &[Case] = &[
-    case("L1", "penumbra of a half plane", half_plane::run),
-    case("L2", "disk emitter", emitters::disks),
-    case("L3", "sphere emitter", emitters::spheres),
-    case("L4", "rectangle emitter", emitters::rectangles),
-    case("L5", "vanishing radius", radius::vanishing),
-    case("L6", "huge and touching lights", radius::huge),
-    case("L7", "white furnace", furnace::run),
-    case("L8", "facing mirrors", mirrors::run),
-    case("L9", "glass", glass::run),
-    case("L10", "narrow lobes", lobes::run),
-    case("L11", "intensities of any size", intensities::run),
-    case("L12", "2^24 samples in one pixel", many_samples::run),
-    case("L13", "samplers at any count", samplers::run),
+    Case::new("L1", "penumbra of a half plane", half_plane::run),
+    Case::new("L2", "disk emitter", emitters::disks),
+    Case::new("L3", "sphere emitter", emitters::spheres),
+    Case::new("L4", "rectangle emitter", emitters::rectangles),
+    Case::new("L5", "vanishing radius", radius::vanishing),
+    Case::new("L6", "huge and touching lights", radius::huge),
+    Case::new("L7", "white furnace", furnace::run),
+    Case::new("L8", "facing mirrors", mirrors::run),
+    Case::new("L9", "glass", glass::run),
+    Case::new("L10", "narrow lobes", lobes::run),
+    Case::new("L11", "intensities of any size", intensities::run),
+    Case::new("L12", "2^24 samples in one pixel", many_samples::run),
+    Case::new("L13", "samplers at any count", samplers::run),
 ];
-
-const fn case(
-    id: &'static str,
-    name: &'static str,
-    run: fn(super::Effort) -> Vec<super::Check>,
-) -> Case {
-    Case { id, name, run }
-}
