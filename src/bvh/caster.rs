@@ -375,13 +375,16 @@ mod tests {
             .into_iter()
             .flat_map(|x| values.into_iter().map(move |y| [x, y]))
             .flat_map(|[x, y]| values.into_iter().map(move |z| [x, y, z]));
+        let mut led = 0;
         for direction in directions {
             let is_number = !direction.iter().any(|x| x.is_nan());
             for (main, axes) in AXES.into_iter().enumerate() {
                 let leads = leads(may_equal(main), turned(direction, axes));
                 let expected = is_number && main_axis(direction) == main;
                 assert_eq!(leads, expected, "{direction:?}, {main}");
+                led += u32::from(leads);
             }
         }
+        assert_eq!(led, 5 * 5 * 5, "one axis of each that is a number");
     }
 }
